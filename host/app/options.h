@@ -126,7 +126,7 @@ void check_engine_options(const OptionTable& table, EngineOptions& options);
 void name_outputs(const OptionTable& table, const std::filesystem::path& scene,
                   OutputOptions& options);
 /// Chooses the integrator for a scene with or without an environment map, and the maximum samples
-/// of adaptive sampling. Throws InputError if these are too few.
+/// of adaptive sampling. Throws InputError if the maximum is too small.
 void check_light_options(const OptionTable& table, bool has_environment, RenderSettings& settings);
 
 /// Parses the options of the scene file, then a command line without the program's name, which
@@ -134,7 +134,7 @@ void check_light_options(const OptionTable& table, bool has_environment, RenderS
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
 /// Returns the options of a scene whose file was read: the values of `given`, overridden by
-/// `requested`, the options of a request to --serve. These must be at kInPage. Throws InputError.
+/// `requested`. The latter are of a request to --serve and must be at kInPage. Throws InputError.
 [[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given,
                                   const std::vector<OptionValue>& requested = {});
 

@@ -155,7 +155,7 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
     };
     monitor.snapshot_seconds = outputs.save_seconds;
   }
-  // The threads may be stuck in a long search: end without them.
+  // The threads may be stuck in a long search. So the process ends without them.
   monitor.abandon = [&](const Film& film) {
     line.erase();
     std::_Exit(run_guarded([&]() -> int {
@@ -174,8 +174,8 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
 }
 
 /// Renders a picture, or serves the page of --serve. Prints the summary on standard output, or on
-/// standard error if an output goes there. If run() throws, no output file has changed. Exception:
-/// Interrupted, before which unfinished pictures are written.
+/// standard error if standard output is an output file. If run() throws, no output file has
+/// changed, except that unfinished pictures are written before Interrupted.
 void run(const Options& options) {
   Stopwatch total, lap;
   Report report;
@@ -204,7 +204,7 @@ void run(const Options& options) {
   inputs.push_back(options.scene);
   check_outputs(options, std::move(inputs));
 
-  // The ground is added after framing, so that it is not framed.
+  // The ground is added after framing, so it has no effect on the camera.
   const RenderSettings& settings = options.render;
   const Framing framing =
       frame_picture(options.camera, scene, static_cast<double>(settings.width) / settings.height);

@@ -31,7 +31,7 @@ class AtomicFile {
   void append(std::string_view bytes);
   /// Syncs the file to disk; nothing can be appended after that.
   void finish();
-  /// Finishes the file, renames it to the target and syncs the folder. At most once.
+  /// Finishes the file, renames it to the target and syncs the folder. Call it at most once.
   void commit();
   /// Returns the temporary name, or a stream's own name, for code that writes the file itself.
   [[nodiscard]] const std::filesystem::path& unnamed() const {

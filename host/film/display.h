@@ -38,7 +38,7 @@ struct DisplayOptions {
 [[nodiscard]] float tone_map(float light, Tone tone);
 
 /// Returns the luminance after `exposure` stops in steps of an 8-bit sRGB display: 255 is white.
-/// Not clamped, as another exposure can show values above white. Pixel errors are in these steps.
+/// Not clamped, because values above white can be visible at another exposure.
 [[nodiscard]] float display_steps(const glm::vec3& light, double exposure);
 
 /// Returns sRGB codes of the film over black. Each code is the nearest to the exact value.

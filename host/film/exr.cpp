@@ -248,7 +248,7 @@ std::string encode_rows(const Film& film, const ExrMetadata& metadata, const Pix
     std::string bytes = stream.str();
     // If memory runs out, the library and the stream may omit a block silently.
     if (!has_pixels || holds_rows(bytes, film, window)) return bytes;
-  } catch (const Iex::BaseExc&) {  // NOLINT(bugprone-empty-catch): no file is in it to fail
+  } catch (const Iex::BaseExc&) {  // NOLINT(bugprone-empty-catch): out of memory
   }
   throw std::bad_alloc();
 }

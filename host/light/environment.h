@@ -15,14 +15,13 @@ namespace raygate {
   return (colour.x + colour.y + colour.z) / 3.0;
 }
 
-/// An EnvironmentMap prepared for rendering. Directions are unit vectors away from the scene; T is
-/// float or FloatLanes.
+/// An EnvironmentMap prepared for rendering. Directions are unit vectors away from the scene.
 ///
 /// Sampling is by cell. A cell lies between the centres of four texels (two at the poles), where
 /// the map is bilinear. A cell's probability is the mean brightness of its corners times its solid
 /// angle; within a cell, directions are uniform. So the pdf is positive wherever the map is
 /// positive, and at least a quarter of the ideal pdf. ("Physically Based Rendering", Pharr, Jakob
-/// and Humphreys, uses whole texels.)
+/// and Humphreys, uses whole texels.) T is float or FloatLanes.
 class Environment {
  public:
   explicit Environment(const EnvironmentMap& map);
@@ -138,7 +137,7 @@ class Environment {
   glm::dvec3 mean_{0.0};
   std::vector<float> row_cdf_;          // cumulative probability of the rows
   std::vector<float> column_cdf_;       // cumulative probability of the cells within each row
-  std::vector<float> cosines_;          // cosines of the edges of rows to up_; one more than rows
+  std::vector<float> cosines_;          // cosines of the angles between up_ and the rows' edges
   std::vector<float> per_solid_angle_;  // by row: 1 / the solid angle of a cell
 };
 

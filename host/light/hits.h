@@ -183,7 +183,7 @@ struct Hits {
   }
 
   /// Returns the cosine of a unit direction to the shading normal; 0 if light from there is not
-  /// scattered: behind the triangle or, in rough glass, where both normals disagree on the side.
+  /// scattered: behind the triangle; for rough glass, on different sides by normal and flat_normal.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
@@ -316,10 +316,10 @@ void shade_in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
 using ShadeFunction = void(const ShadingScene& shading, HitBlock& block, HitKind kind,
                            std::span<const std::uint32_t> at);
 
-/// Whitted's ray tracing ("An improved illumination model for shaded display", 1980). At each hit:
-/// emission; direct light of every light, with a shadow ray to each point light and to one point of
-/// each area light; an ambient term for interreflection; and rays through mirrors and glass, up to
-/// the maximum depth or until their throughput is below the threshold. With one sample per pixel a
+/// Whitted's ray tracing ("An improved illumination model for shaded display", 1980). Adds, at each
+/// hit, emission, an ambient term for interreflection, and direct light, with a shadow ray to each
+/// point light and to one point of each area light. Spawns rays through mirrors and glass, up to
+/// the maximum depth or until their throughput is below the threshold. With one sample per pixel, a
 /// light that is one triangle or parallelogram is sampled at its centre.
 ShadeFunction shade_whitted;
 
@@ -370,7 +370,7 @@ struct IncidentLight {
   /// Computes the fields of light from a point that depend only on the point's position.
   RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
       : target(position) {
-    constexpr float kNear = 1e-30f;  // the inverse is within the range of float
+    constexpr float kNear = 1e-30f;  // least distance_squared with light
     const Triple<T> way = (position - hits.surface.point) * spread<T>(lights.per_unit());
     distance_squared = dot(way, way);
     direction = way * (1.0f / root(distance_squared));

@@ -148,7 +148,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     ++first_[kinds_[i]];
   }
   add_infinite_light(output);
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());  // ends of the kinds
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());  // ends of the kinds' ranges
   order_.resize(first_.back());
   for (std::size_t i = count; i-- > 0;) {
     if (kinds_[i] != kHitKinds) order_[--first_[kinds_[i]]] = static_cast<std::uint32_t>(i);
@@ -252,7 +252,7 @@ bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const 
   return scattered.has_flat != 0 && leaves(scattered.flat);
 }
 
-/// Outputs the results of the hit at position i. Rays to a side without an origin are dropped.
+/// Outputs the results of the hit at position i. Rays to a side without a spawn origin are dropped.
 void Integrator::output_hit(std::size_t i, ShadingOutput& output) {
   const std::uint32_t sample = block_.state(i).sample;
   const SurfaceHit& place = block_.places[i];

@@ -185,7 +185,7 @@ class LightTree::Builder {
       cosine = std::clamp(cosine, -1.0, 1.0);
       const double sine = std::sqrt(1.0 - cosine * cosine);
       const double own = std::sqrt(std::max(0.0, 1.0 - one.spread * one.spread));
-      // The sum of both angles, unless it exceeds 180 degrees.
+      // Cosine of the sum of the angles to one.axis and of one.spread; -1 beyond 180 degrees.
       const bool is_all = one.spread < -cosine;
       all.spread = std::min(all.spread, is_all ? -1.0 : cosine * one.spread - sine * own);
     }

@@ -15,8 +15,8 @@ namespace raygate {
 struct LightBounds {
   glm::dvec3 middle{0.0};  ///< of the bounding sphere
   double radius = 0.0;
-  /// Emission is full within the angle `spread` of the axis. Farther from the axis, it falls off
-  /// with the cosine of the excess angle, up to an excess of `reach`. Both members are cosines.
+  /// Emission is full within the angle `spread` of the axis. Farther from the axis, emission falls
+  /// off with the cosine of the excess angle, up to an excess of `reach`. Both members are cosines.
   glm::dvec3 axis{0.0, 0.0, 1.0};
   double spread = -1.0, reach = 1.0;
   double back = 0.0;  ///< fraction emitted against the axis

@@ -145,7 +145,7 @@ std::optional<CameraLights> default_lights(const Scene& scene, const Camera& cam
   // White surfaces stay below 1, with sky and interreflection added.
   add_far(-0.8, 1.2, is_preview ? 0.4 : 0.6);
   if (is_preview) add_far(1.4, 0.3, 0.16);
-  lights.radius = 0.5 * size;  // penumbras are 1/8 as wide as the occluder's distance
+  lights.radius = 0.5 * size;  // penumbra width: 1/8 of the occluder's distance
   return lights;
 }
 
@@ -343,7 +343,7 @@ void Lights::add_sources(double unit) {
 
 std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t> primitives) {
   struct Edge {
-    std::array<double, 6> ends;  // the smaller one first
+    std::array<double, 6> ends;  // of the edge; the smaller end is first
     std::uint32_t triangle;
     bool is_reversed;
   };

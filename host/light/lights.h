@@ -124,7 +124,7 @@ class Lights {
     glm::vec3 emission{0.0f};
     glm::vec3 position{0.0f};   ///< of a point light, or the direction towards a directional light
     float radius = 0.0f;        ///< of a point light that is a sphere, outside the scene
-    glm::vec3 spot_axis{0.0f};  ///< if is_spot; next: arguments of spot_falloff()
+    glm::vec3 spot_axis{0.0f};  ///< of a spot light; scale, offset: see spot_falloff()
     float spot_scale = 0.0f, spot_offset = 1.0f;
     float area = 0.0f;         ///< in square units
     bool is_textured = false;  ///< `emission` is the mean radiance; see radiance_at()
@@ -251,7 +251,7 @@ class Lights {
   std::vector<Light> lights_;
   std::vector<Patch> patches_;
   std::vector<Source> sources_;                     // by light and patch
-  std::vector<std::uint32_t> source_of_primitive_;  // or kNoIndex; instances do not emit
+  std::vector<std::uint32_t> source_of_primitive_;  // or kNoIndex; instances never emit
   LightTree tree_;
   bool any_power_ = false;
   float per_unit_ = 1.0f;

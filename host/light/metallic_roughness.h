@@ -19,9 +19,9 @@ RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
 /// * Facets (Ggx) reflect f0 + (f90 - f0) s with f0 = m c + (1 - m)(1 - t) r0 and
 ///   f90 = 1 - (1 - m) t - (1 - m)(1 - t)(1 - w).
 /// * Multiple scattering: E is the single-scattering albedo of facets that absorb nothing
-///   (FacetAlbedo). The lost energy 1 - E returns in a wide lobe, (1 - E(view)) (1 - E(light)) / (1
-///   - mean E), reduced by the facets' absorption ("Revisiting physically based shading at
-///   Imageworks", Kulla and Conty 2017, with the squared mean Fresnel factor of Hill).
+///   (FacetAlbedo). The lost energy 1 - E returns in the wide lobe
+///   (1 - E(view)) (1 - E(light)) / (1 - mean E), reduced by absorption ("Revisiting physically
+///   based shading at Imageworks", Kulla and Conty 2017, with Hill's square of the mean Fresnel).
 /// * The diffuse base of a dielectric is (1 - m)(1 - t) c times
 ///   (1 - h(view))(1 - h(light)) / (1 - mean h), where h is the albedo of both lobes above in their
 ///   brightest channel. So a white material conserves energy, and the BRDF is reciprocal.
@@ -45,7 +45,7 @@ struct MetallicRoughnessLobes {
   Triple<T> specular;  ///< single-scattering albedo for the view
   Triple<T> multiple;  ///< multiple-scattering albedo
   Triple<T> diffuse;   ///< albedo of the diffuse base
-  /// Fraction of glass; index of refraction behind the interface over the index in front.
+  /// Fraction of glass, and index of refraction behind the interface over the index in front.
   T glass, eta;
   T glass_gain;  ///< compensation for multiple scattering in glass
   MaskOf<T> is_glass;
@@ -108,7 +108,7 @@ struct MetallicRoughnessLobes {
     return (~kind & (kGlossy | kMirrors)) == 0;
   }
 
-  /// Returns the BRDF, per steradian without the cosine, for a direction in front.
+  /// Returns the BRDF, per steradian, without the cosine, for a direction in front of the surface.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     const T cosine = at_most(at_least(dot(ggx.normal, light), 0.0f), 1.0f);
     const Shares there = shares_at(cosine);

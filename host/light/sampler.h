@@ -33,8 +33,8 @@ RAYGATE_INLINE W reversed_bits(W x) {
   return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
 }
 
-/// Computes Owen's nested uniform scrambling of a word with reversed bits: a bit is flipped or not
-/// depending on the more significant bits. As bits are reversed, these are the lower bits of x.
+/// Computes Owen's nested uniform scrambling of a word with reversed bits: the more significant
+/// bits determine whether a bit is flipped. Here, these are the lower bits of x.
 template <class W>
 RAYGATE_INLINE W owen_scramble(W x, const W& key) {
   x += key;

@@ -64,7 +64,7 @@ struct Refraction {
 /// roughness, in [kLeast, 1]. Directions are unit vectors away from the surface.
 template <class T>
 struct Ggx {
-  static constexpr float kLeast = 0x1p-10f;  // lower bound of alpha, for cosines in float
+  static constexpr float kLeast = 0x1p-10f;  // least alpha: float cosines resolve no narrower lobes
 
   Triple<T> normal;
   T squared;  ///< alpha^2

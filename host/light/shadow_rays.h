@@ -48,7 +48,7 @@ class ShadowRays {
   ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
              bool through_refraction);
 
-  /// Multiplies each ray's `radiance` by the transmittance along the ray. Adds its work to
+  /// Multiplies each ray's `radiance` by the transmittance along the ray. Adds the ray's work to
   /// work[ShadowRay::sample], unless `work` is empty.
   void resolve(std::span<ShadowRay> rays, std::span<RayWork> work = {});
 
@@ -61,8 +61,8 @@ class ShadowRays {
     Segment(std::uint32_t number, const glm::vec3& origin, std::uint32_t primitive)
         : index(number), source(primitive), from(origin) {}
 
-    std::uint32_t index;   // index of its shadow ray
-    std::uint32_t source;  // the primitive at which it starts, or kNone: a light
+    std::uint32_t index;   // index of the shadow ray
+    std::uint32_t source;  // the primitive at which the segment starts; kNone: a light
     glm::vec3 from;
   };
 

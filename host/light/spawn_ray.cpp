@@ -38,8 +38,8 @@ class NeighborClearanceSearch {
     const double area = glm::length(normal_);
     const glm::dvec3 unit_normal = area > 0.0 ? normal_ / area : glm::dvec3(0.0);
     // Normals of planes through the edges. Planes 0 to 2 are parallel to the coordinate axis
-    // closest to the normal; planes 3 to 5 are parallel to the normal. Most neighbours are behind
-    // one of planes 0 to 2.
+    // closest to the normal, and most neighbours are behind one of these. Planes 3 to 5 are
+    // parallel to the normal.
     const glm::dvec3 sizes = glm::abs(normal_);
     const int wider = sizes.x < sizes.y ? 1 : 0, along = sizes[wider] < sizes.z ? 2 : wider;
     glm::dvec3 parallel(0.0);
@@ -189,8 +189,7 @@ class NeighborClearanceSearch {
     return best;
   }
 
-  /// Returns the sum of the g_i ("Why c is a bound"): 0 if one is negative, inf if all reach
-  /// reach_.
+  /// Returns sum g_i ("Why c is a bound"): 0 if one is negative, infinity if all reach reach_.
   [[nodiscard]] RAYGATE_INLINE DoubleQuad apart(const Vectors3& axis,
                                                 const Vectors3 (&y)[3]) const {
     const DoubleQuad highest = maximum(maximum(dot(axis, y[0]), dot(axis, y[1])), dot(axis, y[2]));
@@ -276,9 +275,9 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 // How far O' is from X
 //
 // Candidate k for O' is the float point nearest to X + 2^k u m. u is one float step of the largest
-// coordinate of X. m is the triangle's normal on the wanted side, scaled to a largest component of
-// 1. (search() also tries the ray's direction for m.) Let n be the unit normal, |n|_1 the sum and
-// |n|_max the largest of its magnitudes. All distances are along n.
+// coordinate of X. m is the triangle's normal on the wanted side, scaled so that its largest
+// component is 1. (search() also tries the ray's direction for m.) Let n be the unit normal, |n|_1
+// the sum and |n|_max the largest of its components' magnitudes. All distances are along n.
 //   1. The offset 2^k u m moves the point by 2^k u / |n|_max.
 //   2. If no coordinate is rounded at a step larger than u, rounding moves each coordinate by at
 //      most u / 2, and the point by at most (u / 2) |n|_1.
@@ -311,8 +310,8 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 //   4. So the offset of p from the plane has no effect, and rounding p changes c w by less than u.
 //   5. Rounding G, p - A and the dot product changes c w by less than 2^-23 s. Computing the third
 //      weight as c minus the two others changes c w by less than 2^-21 (s + c).
-// So no triangle is near if no overlap is within 16 u of p and, with c w as computed (8 u suffice),
-//   c w > 16 u + 2^-20 (s + c) + margin.
+// So no triangle is near if no overlap is within 16 u of p and, with c w as computed,
+//   c w > 16 u + 2^-20 (s + c) + margin.  (8 u would suffice.)
 
 namespace {
 

@@ -135,8 +135,7 @@ struct SpawnOrigin {
 /// or just after X (kTransmitted). This holds for the triangle's plane and for the plane of every
 /// other triangle near O' on this side. Exact arithmetic decides the sides. So
 ///   * no triangle lies between X and O', so none is skipped, even in the sharpest corner;
-///   * a ray from O' that leaves the triangle's plane (decided exactly by leaves()) never hits that
-///     triangle again.
+///   * a ray from O' that leaves the triangle's plane (see leaves()) never hits the triangle again.
 ///
 /// Distance: X is computed in double from the corners. Let u be the larger of X's error and one
 /// float step (ulp) of X's largest coordinate. If no other triangle is within 4 u of X, O' is

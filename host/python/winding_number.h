@@ -64,8 +64,8 @@ class WindingNumbers {
       // `off` bounds the error of (x, y). Rounding adds less than 2^-47 |a| |b|. The point is off
       // by `moved`, so each of the four terms of x is off by at most moved (|a| + |b| + moved), and
       // y by moved (|a| + |b|): together less than 4.2 moved (|a| + |b| + moved). The angle over 2
-      // pi is then off by off / 4 / |(x, y)|, or by 1 where pi may be -pi. The rest of the bound
-      // covers the rounding of atan2 and of the sums.
+      // pi is then off by off / 4 / |(x, y)|, or by 1 where atan2 may give -pi for pi. The rest of
+      // the bound covers the rounding of atan2 and of the sums.
       const double off = 0x1p-46 * size_a * size_b + 4.2 * moved * (size_a + size_b + moved);
       const bool may_jump = x <= off && std::abs(y) <= off;
       result.error +=

@@ -27,8 +27,7 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
   return samples >= kFirstErrorCheck && (samples & (samples - 1)) == 0;
 }
 
-/// Returns whether pixels need no more samples. `error` is FilmSums::error, and `wanted` is
-/// RenderSettings::error.
+/// Returns whether pixels are finished. `error`: FilmSums::error; `wanted`: RenderSettings::error.
 ///
 /// A pixel with n samples stops if its error e is at most n / 16 times `wanted`. As e falls with 1
 /// / sqrt(n), one more sample reduces e by e / 2n: at the limit, by `wanted` / 32 for every pixel.
@@ -61,8 +60,8 @@ struct PixelSamples {
 
 /// Returns the samples below `end` that the pixels of `tile` lack. With RenderSettings::error above
 /// 0, converged pixels are skipped. If few pixels remain, they take samples beyond `end`, to keep
-/// batches large. Pixels are ordered by squares of 8 x 8 pixels, and in a square by blocks of 4 x
-/// 2. This order keeps the rays of an intersector's cones and packets close together.
+/// batches large. Pixels are ordered by squares of 8 x 8 pixels, then by blocks of 4 x 2 pixels.
+/// This order keeps the rays of an intersector's cones and packets close together.
 [[nodiscard]] std::vector<PixelSamples> samples_to_trace(const RenderSettings& settings,
                                                          const Film& film, const PixelRect& tile,
                                                          int end);

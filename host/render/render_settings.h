@@ -29,7 +29,7 @@ struct RenderSettings : IntegratorSettings {
   ExtraChannels channels{};  ///< in addition to colour, depth, normal and primitive
 };
 
-/// Callbacks of a render, called on the thread that called render(). Empty ones are skipped.
+/// Callbacks of a render, called on the thread that called render(). Empty callbacks are skipped.
 struct RenderMonitor {
   /// Receives the fraction of passes over tiles that are complete, in [0, 1], periodically.
   /// Returning false stops the render.

@@ -142,7 +142,7 @@ class RenderThreads {
         if (!stopped_at_) stopped_at_ = Clock::now();
         if (monitor_.abandon && !error_ && Clock::now() - *stopped_at_ > kGrace) {
           splats_.add_to(film_);
-          monitor_.abandon(film_);  // under the lock, so that the film does not change
+          monitor_.abandon(film_);  // under the lock: the film must not change
         }
         return;
       }

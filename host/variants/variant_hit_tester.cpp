@@ -8,9 +8,9 @@
 
 // The bound of an edge test in a format with the unit roundoff u = 2^-digits
 //
-// Bounded is |U - I . E|. E is the exact edge plane, F the record's edge words in the format, I the
-// float32 direction with |I_i| < 2, J is I rounded to the format, so |J_i| <= 2. U is J . F as the
-// unit computes it. |.|_1 is the sum of magnitudes. edge_bound() adds these terms:
+// This bounds |U - I . E|. E is the exact edge plane, F the record's edge words in the format, I a
+// float32 direction with |I_i| < 2, and J is I rounded to the format, so |J_i| <= 2. U is J . F as
+// computed by the unit. |.|_1 is the sum of magnitudes. edge_bound() adds these terms:
 //
 // 1. Record. Rounding to F changes J . E by at most 2 u |F|_1. edge_normal's own error adds less
 //    than 2^-7 u |F|_1 (see polygon_record.cpp).
@@ -22,7 +22,7 @@
 // 5. Subnormals. Let q be the least positive number. Six words and five operations are off by q / 2
 //    each, times at most 2: 11 q. In formats with less than 8 exponent bits, the largest |F_i| is
 //    at least 1, so this is at most 11 q |F|_1. With 8 exponent bits, 11 q is negligible: the
-//    largest |F_i| is at least 2^-60, and edge_bound() uses 2^-6 for the 2^-7 of 1.
+//    largest |F_i| is at least 2^-60, and edge_bound() rounds the 2^-7 of step 1 up to 2^-6.
 //
 // The error of t = d / V, where V = N . J as computed, and g = max e(N_k) - e(V) (hit_test_pkg)
 //

@@ -27,8 +27,8 @@ struct Way {
   const Variant* unit = nullptr;  ///< the variant whose t is checked; null: none
 };
 
-/// Tests an Intersector, which finds only nearest hits: each triangle alone, in a separate BVH,
-/// and, for the nearest hit, all triangles in one BVH.
+/// Tests an Intersector, which finds only nearest hits. So each triangle is tested alone, in a
+/// separate BVH, and the nearest hit with all triangles in one BVH.
 class IntersectorSubject : public Subject {
  public:
   IntersectorSubject(IntersectorOf make, const Way& way) : make_(std::move(make)), way_(way) {}
@@ -96,8 +96,8 @@ class IntersectorSubject : public Subject {
     for (const Corners& triangle : *mesh) trees_.emplace_back(Mesh{triangle}, make_);
   }
 
-  /// Finds the hits of all rays. Rays with one origin are traced again: repeated up to kCone rays,
-  /// and alone after a doubt. Results must not depend on other rays, groups or lanes.
+  /// Finds the hits of all rays. Rays with a common origin are traced again, with copies to fill a
+  /// cone, and alone after a doubt. Results must not depend on other rays, groups or lanes.
   void search(Tree& tree) {
     hits_.assign(rays_.size(), {});
     work_.assign(rays_.size(), {});
@@ -153,7 +153,7 @@ class IntersectorSubject : public Subject {
   std::vector<bool> torn_;
 };
 
-/// Completes a kind of subject; each has its own engine, whose BVHs share one unit.
+/// Completes `kind`. Each subject has its own engine. The BVHs of an engine share one unit.
 SubjectKind with(SubjectKind kind, const std::function<IntersectorOf()>& engine, const Way& way) {
   kind.make = [=] { return std::make_unique<IntersectorSubject>(engine(), way); };
   kind.engine = engine;

@@ -8,10 +8,10 @@
 
 // Error bounds of the unit's t = d / (I . n) and P = (d I) / (I . n) in binary32
 //
-// Bounded are the relative errors of t and of each coordinate of P, by the sine of the angle of ray
-// and plane. u = 2^-24 is the unit roundoff. N and D are the exact normal and plane distance, n and
-// d the record's floats, I the direction (floats, so exact), V the float result of I . n. |.| is a
-// vector's length, |.|_1 the sum of its magnitudes.
+// These bounds of the relative errors of t and of each coordinate of P depend on the sine of the
+// angle between ray and plane. u = 2^-24 is the unit roundoff. N and D are the exact normal and
+// plane distance, n and d the record's floats, I the direction (floats, so exact), V the float
+// result of I . n. |.| is a vector's length, |.|_1 the sum of its magnitudes.
 //
 // 1. Words. triangle_normal guarantees a double within 2^-34 |N|_1 of each component, to first
 //    order, and |N|_1 <= sqrt(3) |N|. Each is then rounded to float, with a relative error u. (A

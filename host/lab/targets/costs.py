@@ -10,7 +10,7 @@ import sys
 from host.lab.rows import ROOT
 from synth import brought, catalogue, measure as synth, tools
 
-LIBRARY = "osu035"  # as old as the paper
+LIBRARY = "osu035"  # OSU 0.35 um, a process as old as the paper
 FLOWS = ("parts", "small")  # the first available one is used
 UNITS = {"pipeline": "hit_test_pipeline", "serial": "hit_test_unit"}
 USUAL = {"ExpWidth": 8, "FracWidth": 23, "QuotientBits": 0, "RoundingMode": 0, "Arith": 0}

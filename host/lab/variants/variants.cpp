@@ -1,5 +1,4 @@
-// Verilated hit-test units with a variant's parameters, and their comparison with the reference
-// models, bit for bit.
+// Verilated hit-test units with a variant's parameters, and their comparison with reference models.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -169,7 +168,7 @@ class VariantBursts {
           record.bounds[k] = stepped(std::abs(u), static_cast<int>(below(3)) - 1);
         }
         break;
-      case 2: {  // near the previous distance: around the margin of 64 + 64 steps
+      case 2: {  // near the previous distance; near ties differ by up to 64 + 64 steps
         record = before;
         const int reach = 1 << below(9);
         record.d = stepped(record.d,

@@ -57,7 +57,7 @@ class Picture(dict[str, Array]):
 
 
 class Scene(_raygate.Scene):
-    """Triangles, materials and lights. A pickle holds the absolute name of the file, or the arrays, and the options to build it again."""
+    """Triangles, materials and lights. A pickle holds the absolute name of the file, or the arrays, and the options to rebuild it."""
 
     @overload
     def __init__(self, file: Path, /, *, smooth: float | None = None, degenerate: Degenerate = "leave out",
@@ -117,11 +117,11 @@ class Scene(_raygate.Scene):
               threads: int | None = None) -> Array:
         """Returns the hits of rays: a structured array with a field, int64 or float64, for each answer.
 
-        origins, directions: shape (N, 3), or one vector for all rays, of shape (3,) or (1, 3); float64 in C order is read
-        without a copy. Hits are at origin + t direction with 0 < t < limit, exactly, in float64. A direction may have any
-        length; (0, 0, 0) hits nothing. limits: shape (N,), or one number for all rays; none by default. threads: 1 to 1024,
-        one per processor by default. hits: "nearest", a row for each ray; "any", a row for each ray that says whether it hits
-        anything, sooner; "all", a row for each hit of each ray, near before far, at equal t the lower triangle first.
+        origins, directions: shape (N, 3), or one vector for all rays, of shape (3,) or (1, 3); float64 in C order is read without a copy.
+        Hits are at origin + t direction with 0 < t < limit, exactly, in float64. A direction may have any length; (0, 0, 0) hits nothing.
+        limits: shape (N,), or one number for all rays; none by default. threads: 1 to 1024, one per processor by default. hits:
+        "nearest", a row for each ray; "any", a row for each ray that says whether it hits anything (faster); "all", a row for each hit of
+        each ray, near before far, at equal t the lower triangle first.
 
         columns: one name or several; by default all but material and side. "any" has only ray, hit and doubts, by default ray
         and hit. ray, triangle, object, material: numbers from 0. hit: 1 or 0. t: relative error at most 2^-33. point (fields x,
@@ -160,13 +160,12 @@ class Scene(_raygate.Scene):
 
     @in_context
     def inside(self, points: npt.ArrayLike, *, threads: int | None = None) -> npt.NDArray[np.bool_]:
-        """Returns whether points, of shape (N, 3), or (3,) for one, are inside of closed surfaces: an array of bool, (N,).
-        threads: as for trace().
+        """Returns whether points, of shape (N, 3), or (3,) for one, are inside closed surfaces: bool, (N,). threads: as for trace().
 
-        A point is inside if a ray from it crosses surfaces an odd number of times, counted exactly, for points as trace() rounds origins.
-        So the orientation of faces does not matter, a shell within another one is a cavity, and the intersection of two solids is
-        outside. If faces are oriented alike, winding_number(points)[0] != 0 is the union of solids. Answers have no meaning for an open
-        surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
+        A point is inside if a ray from it crosses surfaces an odd number of times. The count is exact for the points as rounded by
+        trace(). So the orientation of faces does not matter, a shell within another one is a cavity, and the intersection of two solids
+        is outside. If faces are oriented alike, winding_number(points)[0] != 0 is the union of solids. Answers have no meaning for an
+        open surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns="ray", threads=threads)
         return np.asarray(np.bincount(hits["ray"], minlength=len(points)) % 2, np.bool_)

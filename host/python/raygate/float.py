@@ -95,7 +95,7 @@ class Result(NamedTuple):
 def fp_add(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
            tininess: Tininess = "after") -> Result:
     """Returns a + b. `rounding`: one of ROUNDINGS. `tininess`: whether the size of a result is judged "before" or "after" rounding; it
-    affects the flag UNDERFLOW alone. Raises InputError for operands that are not numbers of the format and shapes that cannot be
+    affects the flag UNDERFLOW alone. Raises InputError for operands that are not numbers of the format and shapes that do not
     broadcast."""
     return _run("+", a, b, format, rounding, tininess)
 
