@@ -15,8 +15,7 @@ constexpr std::size_t kMostHits = 2048;             // per block; its lists fit 
 constexpr std::size_t kFacesAhead = 12;             // prefetch distance
 constexpr std::size_t kMostLightSamples = 1 << 16;  // per block: 3 MB
 
-/// Lights each surface from the camera: diffuse colour times the cosine of the view, plus emission.
-/// Rays continue through holes.
+/// Shows diffuse colour times the cosine of the view, plus emission. Rays continue through holes.
 void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
                    std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, []<class T>(Hits<T>& hits) RAYGATE_BODY {

@@ -22,8 +22,7 @@ inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; roug
 inline constexpr HitKind kIsBumpy = 128;           ///< a normal map
 inline constexpr HitKind kHitKinds = 256;          ///< number of masks
 
-/// Direction-independent parameters of MTL's illumination models (see Bsdf) or of
-/// metallic-roughness.
+/// Direction-independent parameters of MTL's models (see Bsdf) or of the metallic-roughness model.
 struct MaterialParameters {
   glm::vec3 diffuse{0.0f};  ///< multiplies the texture; at most 1
   glm::vec3 unlit{0.0f};    ///< multiplies the texture

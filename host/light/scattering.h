@@ -92,8 +92,7 @@ struct Ggx {
     return root(squared + (1.0f - squared) * cosine * cosine);
   }
 
-  /// Returns G2 / (4 a b) for the cosines a, b of both directions. The BRDF is this times D times
-  /// the Fresnel reflectance.
+  /// Returns G2 / (4 a b) for cosines a, b. The BRDF is G2 / (4 a b) times D and the reflectance.
   [[nodiscard]] RAYGATE_INLINE T visibility(const T& a, const T& b) const {
     return 0.5f / (a * stretched(b) + b * stretched(a));
   }

@@ -37,9 +37,8 @@ class NeighborClearanceSearch {
     normal_ = cross(vertex_[1], vertex_[2], normal_sizes_);
     const double area = glm::length(normal_);
     const glm::dvec3 unit_normal = area > 0.0 ? normal_ / area : glm::dvec3(0.0);
-    // Normals of planes through the edges. Planes 0 to 2 are parallel to the coordinate axis
-    // closest to the normal, and most neighbours are behind one of these. Planes 3 to 5 are
-    // parallel to the normal.
+    // Normals of planes through the edges that are parallel to the coordinate axis closest to the
+    // normal (0 to 2; most neighbours are behind one of these planes) or to the normal (3 to 5).
     const glm::dvec3 sizes = glm::abs(normal_);
     const int wider = sizes.x < sizes.y ? 1 : 0, along = sizes[wider] < sizes.z ? 2 : wider;
     glm::dvec3 parallel(0.0);
@@ -299,8 +298,7 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 //
 // Why no triangle is near
 //
-// Let p be candidate 0, w the least barycentric coordinate of the exact X, c the clearance of the
-// triangle, and s = |p - A|_1.
+// Let p be candidate 0, w the exact X's least weight, c the triangle's clearance, s = |p - A|_1.
 //   1. Only triangles within 8 u of X can invalidate p: on each axis, they are within 5 u of p, in
 //      the box of p and the computed X enlarged by 2 u on every side. spawn_reach exceeds 16 u.
 //   2. Other triangles are at least c w - margin away from X, unless they are farther than

@@ -33,8 +33,7 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
   IncidentLight<T> light;
   if (own.kind == Kind::kArea) {
     const auto number = static_cast<std::uint32_t>(i - lights.points().size());
-    // Avoids the exact centre of a quadrilateral. Its triangles share an edge there, and rays to an
-    // edge need exact arithmetic.
+    // Avoids the shared edge at a quadrilateral's centre: rays to an edge need exact arithmetic.
     const bool in_middle = shading.settings.samples == 1 && own.patches == 1;
     const SquarePoint<T> centre = {spread<T>(0.5f + 0x1p-11f), spread<T>(0.5f)};
     const LightPoint<T> point =

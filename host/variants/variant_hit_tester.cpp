@@ -7,25 +7,21 @@
 #include <vector>
 
 // The bound of an edge test in a format with the unit roundoff u = 2^-digits
-//
 // This bounds |U - I . E|. E is the exact edge plane, F the record's edge words in the format, I a
 // float32 direction with |I_i| < 2, and J is I rounded to the format, so |J_i| <= 2. U is J . F as
 // computed by the unit. |.|_1 is the sum of magnitudes. edge_bound() adds these terms:
-//
 // 1. Record. Rounding to F changes J . E by at most 2 u |F|_1. edge_normal's own error adds less
 //    than 2^-7 u |F|_1 (see polygon_record.cpp).
 // 2. Direction. |J_i - I_i| <= 2 u, so |(J - I) . E| <= 2 u (1 + u) |F|_1. In float32, J = I.
 // 3. Dot product. Each product is rounded at most three times: the error is at most
 //    3 u / (1 - 3 u) |J|.|F| <= 6 u / (1 - 3 u) |F|_1. If rounded once: u |J . F| <= 2 u |F|_1.
-// 4. If the format is narrower than float32, the record's words were first rounded to float32. This
-//    adds 2 * 2^-24 (1 + u) |F|_1.
+// 4. Words of formats narrower than float32 were first rounded to float32: 2 * 2^-24 (1 + u) |F|_1.
 // 5. Subnormals. Let q be the least positive number. Six words and five operations are off by q / 2
 //    each, times at most 2: 11 q. In formats with less than 8 exponent bits, the largest |F_i| is
 //    at least 1, so this is at most 11 q |F|_1. With 8 exponent bits, 11 q is negligible: the
 //    largest |F_i| is at least 2^-60, and edge_bound() rounds the 2^-7 of step 1 up to 2^-6.
 //
 // The error of t = d / V, where V = N . J as computed, and g = max e(N_k) - e(V) (hit_test_pkg)
-//
 // 1. In V, the first two products are rounded three times, the third twice. With the roundings of N
 //    and J, these are 5, 5 and 4 roundings.
 // 2. |J_k| <= 2 and |N_k| < 2 * 2^g |V|. So V has a relative error of at most
@@ -148,8 +144,7 @@ class VariantHitTester : public PipelineHitTester {
         if (result.kind != BurstResult::Kind::kNearTie) take_as_it_is(distance.t, report, reports);
         continue;
       }
-      // If a doubt is a hit, its P is as accurate as a sure hit's, provided that V = N . I can be a
-      // divisor and d was not clamped.
+      // A doubt's P is as accurate as a sure hit's if V = N . I is a divisor and d is not clamped.
       const float v = variant_.math.dot(record.normal, direction);
       const bool divisible = twin_.is_divisor(record, v) && !std::isinf(record.bounds[0]);
       if (report.is_sure || divisible) {

@@ -42,9 +42,8 @@ struct Variant {
   [[nodiscard]] Json row() const;
 };
 
-/// Parses a table of variants. Throws InputError, which names `file` and the variant, for unknown
-/// names, invalid values, and a format whose doubts are to be resolved but that has no proven error
-/// bound (see variant_hit_tester.h).
+/// Parses a table of variants. Throws InputError that names `file` and the variant, for unknown
+/// names, invalid values, and doubts to resolve without a proven error bound.
 [[nodiscard]] std::vector<Variant> parse_variants(std::string_view text, const std::string& file);
 
 /// Returns the contents of variants.json at build time.

@@ -22,8 +22,7 @@ struct Case {
   alignas(64) float out[kOutputs][kLanes];
 };
 
-/// Generates numbers of every size, in [-1, 1] and [0, 1], and special ones: zeros, subnormals,
-/// infinities and NaN.
+/// Generates numbers of every size, in [-1, 1] and [0, 1], zeros, subnormals, infinities and NaN.
 class Inputs {
  public:
   void fill(Case& c) {

@@ -291,8 +291,7 @@ TEST(PreviewLights, AreTwoLightsAndTheBackground) {
   EXPECT_GT(lights->points[0].intensity.x, lights->points[1].intensity.x);
 }
 
-// The edge of a roof hides a part of a spherical light from the floor. The rest of the light's disc
-// is a circular segment.
+// A roof hides a part of a spherical light's disc. A circular segment of the disc stays visible.
 TEST(DefaultLights, CastSoftShadows) {
   const Scene wall = square(matte(glm::vec3(0.5f)));
   EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
@@ -321,8 +320,7 @@ TEST(DefaultLights, CastSoftShadows) {
   }
 }
 
-// Default lights replace small emitters in previews only; a faint emissive picture does not count
-// as a light, a bright one does.
+// Default lights replace small emitters in previews only, and faint emissive pictures always.
 TEST(DefaultLights, AreThoseOfScenesThatNothingLights) {
   const auto expect = [](const Scene& scene, bool by_default, bool in_preview, const char* what) {
     EXPECT_EQ(default_lights(scene, camera_from({0, 0, 5})).has_value(), by_default) << what;
