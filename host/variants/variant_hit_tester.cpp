@@ -7,6 +7,7 @@
 #include <vector>
 
 // The bound of an edge test in a format with the unit roundoff u = 2^-digits
+//
 // This bounds |U - I . E|. E is the exact edge plane, F the record's edge words in the format, I a
 // float32 direction with |I_i| < 2, and J is I rounded to the format, so |J_i| <= 2. U is J . F as
 // computed by the unit. |.|_1 is the sum of magnitudes. edge_bound() adds these terms:
@@ -21,7 +22,7 @@
 //    at least 1, so this is at most 11 q |F|_1. With 8 exponent bits, 11 q is negligible: the
 //    largest |F_i| is at least 2^-60, and edge_bound() rounds the 2^-7 of step 1 up to 2^-6.
 //
-// The error of t = d / V, where V = N . J as computed, and g = max e(N_k) - e(V) (hit_test_pkg)
+// The error of t = d / V. V is N . J as computed, e(x) the exponent of x, g = max e(N_k) - e(V).
 // 1. In V, the first two products are rounded three times, the third twice. With the roundings of N
 //    and J, these are 5, 5 and 4 roundings.
 // 2. |J_k| <= 2 and |N_k| < 2 * 2^g |V|. So V has a relative error of at most

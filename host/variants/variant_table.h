@@ -21,7 +21,6 @@ using Json = nlohmann::ordered_json;
 ///   flush, quotient_digits (serial only), fused (no hardware)      see Arithmetic
 ///   doubts           whether the host resolves doubts exactly; otherwise there are no bounds
 ///   brought          a folder of modules that replace modules of hw/ (synth/brought.py); "": none
-///
 /// CMake verilates the design of each object that hw/ supports.
 struct Variant {
   enum class Unit : std::uint8_t {
