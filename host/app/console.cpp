@@ -28,8 +28,8 @@ int why_output_failed = 0;  // errno of a failed print; 0: none failed
 std::atomic<int> noted_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
 
-/// Memory that is released at the first failed allocation: for the error message, and for
-/// destructors that allocate, such as those of JSON values.
+/// Memory that is released at the first failed allocation. The error message needs memory, and so
+/// do some destructors, such as those of JSON values.
 constexpr std::size_t kReserve = std::size_t{1} << 20;
 std::atomic<void*> reserve = nullptr;
 
@@ -168,7 +168,7 @@ void flush_standard_output() {
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
   if (!failed) return;
   const int why = why_output_failed != 0 ? why_output_failed : errno;
-  if (why == EPIPE) {  // as after `| head`: end without a message
+  if (why == EPIPE) {  // as after `| head`: ends without a message
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);
   }
@@ -226,7 +226,7 @@ int run_main(int argc, char** argv,
     try {
       return program({argv + 1, argv + argc});
     } catch (const Information& asked) {
-      std::string text = asked.what(), path = argv[0];  // "bin/raygate-trace": bin/raygate-render
+      std::string text = asked.what(), path = argv[0];  // cut to "./" or "bin/raygate-"
       path.resize(path.find_last_not_of("abcdefghijklmnopqrstuvwxyz") + 1);
       for (std::size_t at = 0; (at = text.find("./", at)) != text.npos; at += path.size()) {
         text.replace(at, 2, path);

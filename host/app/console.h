@@ -79,12 +79,12 @@ class Information : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs `program` and returns its exit status. Prints Information. Other exceptions print a line on
-/// standard error and give status 2 (InputError, no memory), 128 + signal (Interrupted) or 1.
+/// Runs `program` and returns its exit status. Prints what() of Information. Other exceptions print
+/// an error and give status 2 (InputError, no memory), 128 + signal (Interrupted) or 1.
 int run_guarded(const std::function<int()>& program);
 
 /// Body of main(): checks the machine's arithmetic, chooses vector code (RAYGATE_VECTORS) and runs
-/// `program` with the command line's words by run_guarded(). Help shows argv[0]'s path, not "./".
+/// `program` with the command line's words by run_guarded(). Help shows argv[0]'s path.
 int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program);
 

@@ -49,7 +49,7 @@ std::unique_ptr<CoreUnit> make_core(const EngineOptions& options) {
 IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,
                                             std::shared_ptr<const MemoryImage> image) {
   if (!image) image = make_memory_image(options, bvh);
-  // Built here, as threads would wait for each other if the first use built the simulated model.
+  // Built here: if the first use built the simulated model, threads would wait for each other.
   const bool builds_model = options.simulates() && options.board_port.empty();
   if (builds_model && options.has_core()) (void)make_core(options);
   if (builds_model && !options.has_core()) (void)make_tester(options);

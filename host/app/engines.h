@@ -12,8 +12,8 @@
 namespace raygate {
 
 /// Returns a factory of intersectors, which own their simulated models. `bvh` must outlive both.
-/// `image`: its memory image for ray cores; null: made if needed. Builds the engine's simulated
-/// model unless it is built already. Throws InputError if it cannot be built.
+/// `image` is the BVH's memory image for ray cores; if null, it is made when needed. Builds the
+/// engine's simulated model if needed. Throws InputError if the model cannot be built.
 [[nodiscard]] IntersectorFactory make_intersector_factory(
     const EngineOptions& options, const Bvh& bvh,
     std::shared_ptr<const MemoryImage> image = nullptr);

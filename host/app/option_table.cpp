@@ -31,7 +31,7 @@ void OptionTable::add(const std::string& names, const char* value, const std::st
   rows_.push_back(std::move(row));
 }
 
-/// Returns two columns, the second one wrapped. Wide names extend into the second column.
+/// Returns the text of --help in two columns; the second is wrapped. Wide names extend into it.
 std::string OptionTable::help() const {
   std::string text = about_ + "\n";
   const char* group = nullptr;

@@ -18,8 +18,8 @@
 
 namespace raygate {
 
-/// Parses all of `text` as a number of type T ("12", "-1.5e3"). Returns nullopt if the text is no
-/// number or out of T's range; floating-point numbers are infinite or NaN only if the text says so.
+/// Parses all of `text` as a number of type T ("12", "-1.5e3"). Returns nullopt if the text is not
+/// a number or is out of T's range. Only the texts "inf" and "nan" give infinity and NaN.
 template <typename T>
 [[nodiscard]] std::optional<T> parse_number(std::string_view text) {
   T value{};
@@ -114,8 +114,8 @@ struct CommandLine {
   std::vector<std::string> plain;  ///< words that belong to no option
 };
 
-/// The options of a program, in the order of --help. Values are stored in the targets of the rows,
-/// which must outlive the table. "{}" in a help text is the target's value when the row is added.
+/// The options of a program, in the order of --help. Values are stored in the rows' targets, which
+/// must outlive the table. "{}" in a help text is the target's value at the time of adding.
 class OptionTable {
  public:
   /// Stores a value; returns false if the text does not match the row's `expected`.
@@ -209,8 +209,7 @@ class OptionTable {
 
   /// Throws InputError "--size: found 'big', expected WIDTHxHEIGHT" about the last value given.
   [[noreturn]] void fail_value(const std::string& name, const std::string& expected) const;
-  /// Throws InputError with this message and, if values of these options are in a scene file, their
-  /// place there.
+  /// Throws InputError with this message, and the place of the options' values in a scene file.
   [[noreturn]] void fail(const std::string& message,
                          std::initializer_list<const char*> names) const;
 

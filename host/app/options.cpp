@@ -334,7 +334,7 @@ SceneFile scene_file_of(const fs::path& scene) {
   std::error_code ignored;
   if (scene != beside && !fs::is_regular_file(beside, ignored))
     return {.file = scene, .obj = scene};
-  if (scene != beside) require_model_ending(scene);  // a misspelt ending is not the scene beside it
+  if (scene != beside) require_model_ending(scene);  // so misspelt endings are errors
   SceneFile file = read_scene_file(beside);
   // The scene file's model may be elsewhere, if a script makes it.
   if (scene != beside && fs::exists(scene, ignored) &&
@@ -541,8 +541,8 @@ void check_engine_options(const OptionTable& table, EngineOptions& options) {
   options.instances = InstanceMode::kFlatten;  // a core's memory holds one tree
 }
 
-/// --output: "a.exr" or "a.png" names this file alone; "a", both; a folder, both in it, named after
-/// the scene; "", both in the current folder.
+/// --output "a.exr" or "a.png" names only this file, "a" names both. A folder, or "" for the
+/// current folder, gets both, named after the scene.
 void name_outputs(const OptionTable& table, const fs::path& scene, OutputOptions& options) {
   fs::path name = table.given("output");
   std::error_code ignored;  // a name that cannot be looked up is no folder

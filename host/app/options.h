@@ -86,7 +86,7 @@ struct CoreFileOptions {
 /// The options of ./render. Every value is in its range; files are not checked.
 struct Options : EngineOptions {
   std::filesystem::path scene;  ///< the file that was named: a model or a scene file
-  SceneFile scene_file;         ///< the scene file named or beside the model; else the model
+  SceneFile scene_file;         ///< the scene file that was named or is beside the model
   /// Values in the scene file, followed by those on the command line, which override them.
   std::vector<OptionValue> given;
   RenderSettings render;
@@ -126,15 +126,15 @@ void check_engine_options(const OptionTable& table, EngineOptions& options);
 void name_outputs(const OptionTable& table, const std::filesystem::path& scene,
                   OutputOptions& options);
 /// Chooses the integrator for a scene with or without an environment map, and the maximum samples
-/// of adaptive sampling. Throws InputError if these are too few.
+/// of adaptive sampling. Throws InputError if the maximum is too small.
 void check_light_options(const OptionTable& table, bool has_environment, RenderSettings& settings);
 
 /// Parses the options of the scene file, then a command line without the program's name, which
 /// overrides them. Throws InputError, and Information for --help and --version.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
-/// Returns the options of a scene whose file was read, with the values of `given`, then of
-/// `requested`, from a request to --serve, whose options must be at kInPage. Throws InputError.
+/// Returns the options of a scene whose file was read: the values of `given`, overridden by
+/// `requested`. The latter are of a request to --serve and must be at kInPage. Throws InputError.
 [[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given,
                                   const std::vector<OptionValue>& requested = {});
 

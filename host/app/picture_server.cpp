@@ -143,7 +143,7 @@ class PictureServer {
 
  private:
   static int handle(mg_connection* connection, void* server) {
-    // Another thread, because stacks of CivetWeb's threads (100 kB) are too small.
+    // Answers on another thread, because stacks of CivetWeb's threads (100 kB) are too small.
     const Request request(connection);
     Reply reply;
     try {
@@ -197,7 +197,7 @@ class PictureServer {
       if (value.name == "camera" || value.name == "view") replaced.insert({"camera", "view"});
     }
     erase(given, replaced);
-    // By default the camera decides on the ground, but the served scene is fixed.
+    // By default, the camera decides whether there is a ground, but the served scene is fixed.
     given.push_back({"ground", scene_.has_ground ? "on" : "off"});
     Options options = with_values(options_, std::move(given), request.parameters);
     if (options.has_core() && scene_.prepared.bvh.has_instances()) {

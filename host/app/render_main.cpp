@@ -65,9 +65,9 @@ ExrMetadata make_metadata(const Options& options, const Framing& framing, const 
   return metadata;
 }
 
-/// Reads a film to resume, with the channels that this run's outputs need. `metadata`: of this
-/// run's picture. Throws InputError if the file cannot be read, has no sums, or shows another
-/// picture; only --spp may be larger.
+/// Reads a film to resume, with the channels that this run's outputs need. `metadata` is of this
+/// run. Throws InputError if the file cannot be read, has no sums, or shows another picture; only
+/// --spp may be larger.
 Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
   const std::string name = options.resume.string();
   FilmFile file = read_film(options.resume);
@@ -103,8 +103,8 @@ Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
   return film;
 }
 
-/// Renders with a progress line. Saves the unfinished picture periodically, and after a signal
-/// unless no pixel shows anything; a signal ends in Interrupted.
+/// Renders with a progress line. Saves the unfinished picture periodically. After a signal, saves
+/// it unless no pixel shows anything, and throws Interrupted.
 Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata metadata,
                       const IntersectorFactory& make_intersector, RenderStats& stats) {
   ProgressLine line(!options.quiet);
@@ -155,7 +155,7 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
     };
     monitor.snapshot_seconds = outputs.save_seconds;
   }
-  // The threads may be stuck in a long search: end without them.
+  // The threads may be stuck in a long search. So the process ends without them.
   monitor.abandon = [&](const Film& film) {
     line.erase();
     std::_Exit(run_guarded([&]() -> int {
@@ -174,8 +174,8 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
 }
 
 /// Renders a picture, or serves the page of --serve. Prints the summary on standard output, or on
-/// standard error if an output goes there. If it throws, no output file has changed, except that it
-/// writes the unfinished pictures before it throws Interrupted.
+/// standard error if standard output is an output file. If run() throws, no output file has
+/// changed, except that unfinished pictures are written before Interrupted.
 void run(const Options& options) {
   Stopwatch total, lap;
   Report report;
@@ -204,7 +204,7 @@ void run(const Options& options) {
   inputs.push_back(options.scene);
   check_outputs(options, std::move(inputs));
 
-  // The ground is added after framing, so that it is not framed.
+  // The ground is added after framing, so it has no effect on the camera.
   const RenderSettings& settings = options.render;
   const Framing framing =
       frame_picture(options.camera, scene, static_cast<double>(settings.width) / settings.height);

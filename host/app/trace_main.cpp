@@ -60,7 +60,7 @@ std::atomic<const char*> unfinished_file = nullptr;  // to be removed after a si
 static_assert(std::atomic<const char*>::is_always_lock_free,
               "signal handlers may use nothing else");
 
-/// Ends the program at once, whatever the threads do.
+/// Ends the program at once, without waiting for threads.
 [[noreturn]] void end(int signal) {
   std::string_view line = "error: interrupted; the table is not whole\n";
   if (const char* const file = unfinished_file) {
@@ -116,7 +116,7 @@ void trace_rays(const TraceOptions& options) {
     static const std::string name = file->unnamed().string();  // outlives the file
     if (!file->is_stream()) unfinished_file = name.c_str();
   } else {
-    std::signal(SIGPIPE, SIG_DFL);  // `| head` ends it without a message
+    std::signal(SIGPIPE, SIG_DFL);  // `| head` ends the program silently
   }
   handle_interruptions(end);
   const auto write = [&](std::string_view bytes) {

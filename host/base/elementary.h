@@ -1,6 +1,6 @@
-// Sines, logarithms and powers with the same bits on every machine: IEEE 754 additions,
-// multiplications and divisions in a fixed order, without the C library. Also the sRGB curve (IEC
-// 61966-2-1), which converts between scene-linear light and 8-bit codes.
+// Sines, logarithms and powers. The results have the same bits on every machine, because they use
+// only IEEE 754 additions, multiplications and divisions in a fixed order, not the C library.
+// Also the sRGB curve (IEC 61966-2-1), which converts between scene-linear light and 8-bit codes.
 #pragma once
 
 #include <algorithm>
@@ -22,10 +22,10 @@ struct SineCosine {
 template <class D>
 RAYGATE_INLINE SineCosine<D> sine_cosine(const D& turns) {
   constexpr double kRadians = 6.283185307179586476925286766559;
-  // The nearest quarter turn, computed in float, and the remainder, up to slightly over 1/8.
+  // The nearest quarter turn is found in float. The remainder is up to slightly over 1/8 turn.
   const auto quarter = whole(narrow(turns) * 4.0f + 4096.5f) - 4096;
   const D x = (turns - wide(quarter) * 0.25) * kRadians, y = x * x;
-  // Taylor's series; the first term left out is below 2^-54.
+  // Taylor series; the first omitted term is below 2^-54.
   D sine = D{} + 1.0, cosine = D{} + 1.0;
   for (int k = 16; k >= 2; k -= 2) {
     sine = 1.0 - sine * (y * (1.0 / (k * (k + 1))));
@@ -63,11 +63,11 @@ RAYGATE_INLINE WideOf<T> turns_of(const T& y, const T& x) {
 template <class D>
 RAYGATE_INLINE D binary_logarithm(const D& x) {
   constexpr double kLog2OfE = 1.4426950408889634073599246810019;
-  // x = m 2^e with m in about [sqrt(1/2), sqrt(2)], computed in float.
+  // x = m 2^exponent with m in about [sqrt(1/2), sqrt(2)]. The exponent is found in float.
   constexpr std::int32_t kRootOfHalf = 0x3F3504F3;
   const auto exponent = (bits_in(narrow(x)) - kRootOfHalf) >> 23;
   const D m = x * wide(float_of((127 - exponent) << 23));
-  // log m = 2 artanh s for s = (m - 1) / (m + 1), |s| < 0.172: Taylor's series.
+  // ln m = 2 artanh s for s = (m - 1) / (m + 1), |s| < 0.172, by the Taylor series of artanh.
   const D s = (m - 1.0) / (m + 1.0), y = s * s;
   D sum = D{} + 1.0 / 23;
   for (int k = 21; k >= 1; k -= 2) sum = sum * y + 1.0 / k;
@@ -87,7 +87,7 @@ RAYGATE_INLINE D binary_power(const D& x) {
   return choose(is_zero, D{}, sum * wide(float_of((exponent + 127) << 23)));
 }
 
-/// Returns base^exponent for a base as in binary_logarithm; the result must be below 2^128.
+/// Returns base^exponent for a positive base in the range of normal floats, for results < 2^128.
 template <class D>
 RAYGATE_INLINE D power(const D& base, const D& exponent) {
   return binary_power<D>(binary_logarithm(base) * exponent);
@@ -105,8 +105,8 @@ RAYGATE_INLINE D power(const D& base, const D& exponent) {
   return x <= 0.0031308 ? 12.92 * x : 1.055 * power(x, 1.0 / 2.4) - 0.055;
 }
 
-/// Returns the sRGB code from 0 to 255 nearest to scene-linear `linear`: 0 below 0 and for NaN, 255
-/// above 1. Monotonic, and the inverse of `srgb_to_linear` for all 256 codes.
+/// Returns the sRGB code from 0 to 255 nearest to a scene-linear value: 0 below 0 and for NaN, 255
+/// above 1. The function is monotonic and inverts `srgb_to_linear` for all 256 codes.
 [[nodiscard]] inline std::uint8_t linear_to_srgb(float linear) {
   // Entry k is the least linear value whose nearest code is k + 1.
   static const auto thresholds = [] {

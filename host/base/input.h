@@ -11,11 +11,10 @@
 
 namespace raygate {
 
-/// Returns the contents of a file. Throws InputError if it is unreadable, a folder, a device or
-/// empty.
+/// Returns a file's contents. Throws InputError for folders, devices, unreadable and empty files.
 [[nodiscard]] std::string read_file(const std::filesystem::path& file);
 
-/// Returns the number at `bytes`, in little-endian or big-endian byte order.
+/// Returns the number stored at `bytes`: big-endian if `highest_first`, otherwise little-endian.
 template <class Number>
 [[nodiscard]] Number number_at(const char* bytes, bool highest_first = false) {
   char ordered[sizeof(Number)];
@@ -32,8 +31,8 @@ enum class NumberType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat,
 [[nodiscard]] std::size_t bytes_of(NumberType type);
 [[nodiscard]] double number_at(const char* bytes, NumberType type, bool highest_first = false);
 
-/// Returns the word in quotes for a message: its first 40 characters, with unprintable ones as
-/// \xHH.
+/// Returns the word in single quotes for a message. Control characters are written as \xHH; bytes
+/// after the first 40 are replaced by "...".
 [[nodiscard]] std::string in_quotes(std::string_view word);
 
 /// Returns the double nearest to a decimal number, in any locale; nullopt unless the whole word is

@@ -6,9 +6,8 @@
 
 namespace raygate {
 
-/// An error in the user's input. The text is one line with what was found and what was expected,
-/// and with file and line if there are any. Caught in main, which prints it and exits with
-/// status 2.
+/// An error in the user's input. The text is one line: file and line if there are any, what was
+/// found, and what was expected. main prints the text and exits with status 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

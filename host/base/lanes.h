@@ -1,5 +1,5 @@
-// Lanes: vectors of any element type and count, with operations for vectors and single numbers;
-// compiled for each instruction set by in_vectors (host/base/vectors.h).
+// Lanes: vectors of any element type and count, and operations that work on vectors and single
+// numbers. in_vectors (host/base/vectors.h) compiles them for each instruction set.
 #pragma once
 
 #include <bit>
@@ -21,9 +21,9 @@
 
 namespace raygate {
 
-/// Number of rays handled at a time: one AVX register of floats.
+/// Number of rays handled at a time: as many as an AVX register has floats.
 inline constexpr int kLanes = 8;
-/// Number of triangles tested at a time: one SSE register of floats, or AVX register of doubles.
+/// Number of triangles tested at a time: an SSE register has 4 floats, an AVX register 4 doubles.
 inline constexpr int kQuad = 4;
 
 /// A set of lanes; bit k belongs to lane k.
@@ -110,7 +110,8 @@ RAYGATE_INLINE T spread(Element x) {
   return T{} + x;
 }
 
-/// Converts lanes to another element type: rounded to nearest, or truncated to integers.
+/// Converts lanes to another element type. Converting to floats rounds to nearest, to integers
+/// towards 0.
 template <class To, class T>
 RAYGATE_INLINE To convert(const T& x) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -222,8 +223,8 @@ RAYGATE_INLINE auto join(const Quad& low, const Quad& high) {
 }
 
 #ifdef RAYGATE_AVX2
-// Instructions that compilers do not generate from vector code. Not always inlined, as only
-// functions for these instruction sets may contain them, such as the bodies of in_vectors.
+// Instructions that compilers do not generate from vector code. These functions are not marked
+// always_inline: only functions compiled for the same instruction set can inline them.
 [[gnu::target("avx")]] inline LaneMask avx_sign_mask(const FloatLanes& x) {
   return static_cast<LaneMask>(__builtin_ia32_movmskps256(x));
 }
@@ -274,7 +275,7 @@ RAYGATE_INLINE DoubleQuad widen(const FloatQuad& from) {
 /// Vector of floats that fills a register; GCC compares wider vectors word by word.
 template <Vectors kCode>
 using NativeFloats = Vec<float, kCode == Vectors::kBaseline ? kQuad : kLanes>;
-/// Joins quad(0) and, if T has twice as many lanes, quad(1).
+/// Returns quad(0) if T has four lanes, or quad(0) and quad(1) joined if it has eight.
 template <class T, class Quad>
 RAYGATE_INLINE T joined(const Quad& quad) {
   if constexpr (kLanesOf<T> == kQuad) {
@@ -314,8 +315,8 @@ RAYGATE_INLINE void transpose(FloatLanes (&rows)[kLanes]) {
   }
 }
 
-/// Load records, one per lane, so that words[i] has word i of each record, or store the first
-/// `count` records. A record is kWords consecutive floats or 32-bit words.
+/// Load one record per lane, or store those of the first `count` lanes. A record is kWords
+/// consecutive floats or 32-bit words; words[i] holds word i of each lane's record.
 template <class T, std::size_t kWords, class Record>
 RAYGATE_INLINE void load_records(const Record* const (&records)[kLanesOf<T>], T (&words)[kWords]) {
   static_assert(sizeof(Record) == 4 * kWords && kWords % kLanes == 0);

@@ -1,4 +1,4 @@
-// Work on several threads, and checkpoints at which it can be ended early.
+// Parallel loops over several threads, and checkpoints at which work can be ended early.
 #pragma once
 
 #include <atomic>

@@ -68,8 +68,8 @@ template <class T>
 RAYGATE_INLINE T largest_size(const Triple<T>& a) {
   return maximum(absolute(a.z), maximum(absolute(a.y), absolute(a.x)));
 }
-/// Returns a direction scaled by a power of two (see is_scaled), which is exact. Its largest
-/// component must be a normal number below 2^126.
+/// Returns the direction multiplied by a power of two, so that its largest magnitude is in [1, 2).
+/// Exact unless a component underflows. The largest magnitude must be normal and below 2^126.
 template <class T>
 RAYGATE_INLINE Triple<T> scaled(const Triple<T>& a) {
   constexpr std::int32_t kExponent = 0x7F800000, kOne = 0x3F800000;

@@ -20,7 +20,7 @@ enum class Vectors { kBaseline, kAvx2, kAvx512 };
   return kNames[static_cast<std::size_t>(vectors)];
 }
 
-// With RAYGATE_BASELINE_ONLY, the body is called directly, to compile faster.
+// RAYGATE_BASELINE_ONLY makes compiling faster: in_vectors then only has the baseline version.
 #ifdef RAYGATE_BASELINE_ONLY
 #define RAYGATE_INLINE inline
 #define RAYGATE_BODY
@@ -33,7 +33,7 @@ enum class Vectors { kBaseline, kAvx2, kAvx512 };
 #endif
 #endif
 
-/// Returns the widest instruction set that is compiled and that this machine has.
+/// Returns the widest instruction set that both this build and this machine support.
 [[nodiscard]] inline Vectors widest_vectors() {
 #ifdef RAYGATE_AVX2
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) {
@@ -45,15 +45,14 @@ enum class Vectors { kBaseline, kAvx2, kAvx512 };
   return Vectors::kBaseline;
 }
 
-/// Returns the instruction sets of this machine, narrower first, for tests.
+/// Returns the instruction sets that build and machine support, narrower first. For tests.
 [[nodiscard]] inline std::span<const Vectors> machine_vectors() {
   static constexpr Vectors kAll[] = {Vectors::kBaseline, Vectors::kAvx2, Vectors::kAvx512};
   return std::span(kAll).first(static_cast<std::size_t>(widest_vectors()) + 1);
 }
 
-/// Returns the instruction set that the environment variable RAYGATE_VECTORS names, or else the
-/// widest. Throws std::runtime_error, one line, for an unknown name or one that this machine does
-/// not have.
+/// Returns the instruction set named by the environment variable RAYGATE_VECTORS, or the widest if
+/// the variable is unset or empty. Throws std::runtime_error with one line for other names.
 [[nodiscard]] inline Vectors wanted_vectors() {
   const char* const text = std::getenv("RAYGATE_VECTORS");
   if (text == nullptr || *text == '\0') return widest_vectors();

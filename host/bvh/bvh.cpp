@@ -9,12 +9,11 @@
 //
 // The children of a wide node are a cut through the binary tree below it. The best tree is found
 // from the leaves up (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs through
-// compressed wide BVHs", 2017). Let C(n, i) be the cost of the subtree of binary node n if it
-// becomes at most i children:
-//   C(n, 1) = A kNodeCost + C(n, 8) as an inner node; A kLeafCost (up to kMaxLeafSize) as a leaf;
-//   C(n, i) = C(n, i - 1), or C(left, k) + C(right, i - k) for the best k.
-// A is the probability that a ray which meets the root's box meets that of n: the ratio of their
-// surface areas.
+// compressed wide BVHs", 2017). Let C(n, i) be the least cost of the subtree of binary node n if
+// the subtree becomes at most i children of a wide node. Let A be the probability that a ray which
+// meets the root's box meets the box of n: the ratio of their surface areas. Then
+//   C(n, 1) is the lesser of A kNodeCost + C(n, 8), an inner node, and A kLeafCost, a leaf;
+//   C(n, i) is the lesser of C(n, i - 1) and C(left, k) + C(right, i - k) for the best k.
 
 namespace raygate {
 namespace {
@@ -88,7 +87,7 @@ class BvhWriter {
                [&](const Primitive& p) { return is_triangle(p); });
   }
 
-  /// A task for one thread: a binary node of limited size.
+  /// A task for one thread: a binary node with at most kTreeTask primitives below it.
   struct Task {
     Ref ref;
     std::uint32_t parent;  ///< index of the parent in the BVH
@@ -218,7 +217,8 @@ class BvhWriter {
     }
   }
 
-  /// Writes `ref` to nodes[index] and appends its descendants. If `tasks`, it gets small subtrees.
+  /// Writes `ref` to nodes[index] and appends its descendants to `nodes`. If `tasks` is not null,
+  /// subtrees of up to kTreeTask primitives are appended to `tasks` instead.
   void write_below(std::vector<Bvh::Node>& nodes, std::uint32_t index, Ref ref,
                    std::vector<Task>* tasks) {
     Ref children[Bvh::kWidth];

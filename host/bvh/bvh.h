@@ -49,17 +49,16 @@ class RangeMap {
 
  private:
   std::vector<std::uint32_t> begins_{0};  // start of each range, and the end
-  // Index of the range in which each chunk of 2^shift_ numbers begins, then that of the last range.
+  // For each chunk of 2^shift_ numbers, the range in which it begins; then the index of the last.
   std::vector<std::uint32_t> first_;
   int shift_ = 0;
 };
 
-/// An instance of a mesh. It has the nodes and primitives of the mesh's BVH, renumbered to start at
-/// `first`.
+/// An instance of a mesh: nodes and primitives of the mesh's BVH, renumbered to start at `first`.
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance
   float matrix[3][3];     ///< linear part of the transform, rounded
-  float low[3], high[3];  ///< bounds of the translation, widened for all rounding
+  float low[3], high[3];  ///< bounds of the translation, widened to cover rounding of boxes
   std::uint32_t mesh;     ///< index of the mesh's BVH
   std::uint32_t first = 0;
   std::uint32_t first_triangle = 0;  ///< index in the scene of the instance's first triangle
@@ -90,14 +89,13 @@ class Bvh {
     std::uint32_t first;  ///< index of an inner node, or of a leaf's first primitive
     std::uint32_t count;  ///< number of a leaf's primitives; 0: an inner node
 
-    /// kNone, with more triangles than a leaf may have, marks the end of a traversal.
+    /// kNone marks the end of a traversal; `count` is then more than kMaxLeafSize.
     enum Kind : std::size_t { kInner, kLeaf, kNone, kKinds };
     [[nodiscard]] std::size_t kind() const { return (count + kMaxLeafSize - 1) / kMaxLeafSize; }
   };
 
   /// Eight boxes that are tested against a ray at once. Each is one float wider than its contents
-  /// on every side. Absent children come last and have empty boxes: low = +infinity, high =
-  /// -infinity.
+  /// on every side. Absent children come last; their boxes have low = +infinity, high = -infinity.
   struct alignas(64) Node {
     float bounds[2][3][kWidth];  ///< [low = 0, high = 1][axis][child]
     Child child[kWidth];
@@ -124,8 +122,8 @@ class Bvh {
   };
 
   /// Builds the BVH of fewer than 2^31 triangles. All positions are finite with a magnitude of at
-  /// most 2^126, also after instances' transforms, even if terms are summed by magnitude. No ray
-  /// enters the BVH of a scene without triangles. A scene with rests must outlive the BVH.
+  /// most 2^126, also after instances' transforms, where this limit holds for the sum of the
+  /// magnitudes of a coordinate's terms. A scene with rests must outlive the BVH.
   explicit Bvh(const Scene& scene, int threads = 1);
 
   /// Returns the stored nodes, without those of instances; nodes()[0] is the root.
@@ -170,7 +168,7 @@ class Bvh {
     if (!is_binary32() && !is_instanced(primitive)) add_rests(triangles_[primitive], corners);
     return corners;
   }
-  /// Prefetches what corners_of() reads beside binary32 corners, by three calls with step 0, 1, 2.
+  /// Prefetches the triangle and rests that corners_of() reads, by three calls: step 0, 1 and 2.
   RAYGATE_INLINE void prefetch_rests(std::uint32_t primitive, int step) const {
     if (is_binary32() || is_instanced(primitive)) return;
     const std::uint32_t& triangle = triangles_[primitive];
@@ -234,8 +232,8 @@ class Bvh {
   std::span<const glm::ivec3> rests_;  // the scene's rests, or none
   std::span<const Triangle> faces_;    // the scene's triangles
 
-  // Nodes and primitives with at least this number belong to instances. Each instance has as many
-  // numbers as its mesh has primitives, and a mesh has no more nodes than primitives.
+  // Node and primitive indices from this one on belong to instances. Each instance has as many
+  // indices as its mesh has primitives. A mesh has no more nodes than primitives.
   std::uint32_t first_instanced_ = 0xFFFFFFFF;
   RangeMap instance_numbers_;
   std::vector<InstanceBvh> instances_;
@@ -262,9 +260,9 @@ class BvhView {
     return static_cast<const Bvh::Node*>(places_[Bvh::Child::kInner].begin)[index];
   }
 
-  /// Returns the corners of a leaf's triangles: coordinate k of corner v of triangle i is at [(3 v
-  /// + k) count + i]. Further floats, up to four triangles, can be read but are undefined. Corners
-  /// of instances are computed in `room`.
+  /// Returns the corners of a leaf's triangles. Coordinate k of corner v of triangle i is at index
+  /// (3 v + k) leaf.count + i, which can be read for i up to 3; values for i >= leaf.count are
+  /// meaningless. Corners of instances are computed in `room`.
   [[nodiscard]] RAYGATE_INLINE const float* corners_of(const Bvh::Child& leaf,
                                                        Bvh::LeafRoom& room) const {
     if (leaf.first >= first_instanced_) [[unlikely]] {
@@ -276,9 +274,8 @@ class BvhView {
            9 * std::size_t{leaf.first};
   }
 
-  /// Prefetches a child that will be visited soon; for kNone, the first leaf. There is no branch on
-  /// the kind, which would be mispredicted. (Always inlined: GCC 12 drops calls of a function that
-  /// only prefetches.)
+  /// Prefetches a child that will be visited soon; for kNone, the first leaf. Does not branch on
+  /// the kind, to avoid mispredictions. (GCC 12 drops calls of functions that only prefetch.)
   RAYGATE_INLINE void prefetch(const Bvh::Child& child) const {
     if (child.first >= first_instanced_) [[unlikely]]
       return bvh_->prefetch_instance(child);

@@ -10,8 +10,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the triangle's closest point: on one of the edges beyond which `point` lies or, if there
-/// are none, the projection of `point`. An exact normal keeps the result accurate for slivers.
+/// Returns the triangle's point closest to `point`: on an edge if `point` lies outside an edge,
+/// otherwise the projection of `point`. An accurate normal keeps the result accurate for slivers.
 glm::dvec3 closest_on(const Corners& t, const glm::dvec3& point) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const glm::dvec3 normal = triangle_normal(t);
@@ -62,10 +62,10 @@ void search(const Bvh& bvh, const Bvh::Child& child, const glm::dvec3& point, Cl
 
 }  // namespace
 
-/// At 2^27 times the BVH's size and more, distances to its triangles differ by less than rounding,
-/// so a search would visit the whole BVH. It then starts from a point at that distance in the same
-/// direction. The triangle nearest to this point is farther from `point` than the nearest one by
-/// less than the rounding of the distance.
+/// If `point` is farther than 2^27 times the BVH's size, distances to different triangles differ by
+/// less than rounding errors, and a search would visit the whole BVH. Instead, the search uses a
+/// point at 2^27 times the size in the same direction. The triangle closest to this point is, up to
+/// a rounding error of the distance, closest to `point`, too.
 ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point) {
   Bvh::Node room;
   const auto [low, high] = BvhView(bvh).node(0, room).box();

@@ -17,13 +17,13 @@ struct ClosestPoint {
   glm::dvec3 point{0.0};
 };
 
-/// Returns the point of the triangles closest to `point`, which is finite, computed in double with
-/// rounding errors. Of triangles at equal distance, the one with the lower index is returned. The
-/// BVH must have a triangle.
+/// Returns the point of any triangle that is closest to `point`, computed in double with rounding
+/// errors. Of triangles at equal distance, the one with the lower index in the scene is returned.
+/// `point` must be finite, and the BVH must have a triangle.
 [[nodiscard]] ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point);
 
 /// Calls visit(leaf) for the leaves whose boxes touch the closed box from `low` to `high`, in any
-/// order, until a call returns true. Returns whether a call did. To be called within in_vectors.
+/// order, until a call returns true. Returns whether a call did. Must be called within in_vectors.
 template <Vectors kCode, class Visit>
 RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
                                   const Visit& visit) {

@@ -11,19 +11,19 @@
 
 // Why boxes of an instance contain its triangles
 //
-// Let u = 2^-24, m a row of the instance, m' its first three elements in float, v a corner of the
-// mesh, and [l, h] the box of a node that contains it. The corner's coordinate is c =
-// float32(double(m.v + m3)), so c differs from m.v + m3 by at most 1.01 u S + 2^-150, where S is
-// the sum of |m_k| V_k and |m3|, and V_k the largest magnitude of a bound of the mesh along axis k.
-//
-// The low bound is computed in float as the sum of low <= m3 - e and, for each axis, m'_k x_k; x_k
-// is the end of [l, h] with the lesser product, so m'.v >= m'.x. Three products and three sums have
-// an error of 4.1 u (S + e) + 3 2^-150 in all, and m'.v differs from m.v by at most D = sum |m_k -
-// m'_k| V_k. The next float below c is 2.02 u S + 2^-149 away. The bound is not above that float if
-//   e >= D + (4.1 + 1.01 + 2.02) u S + 4.1 u e + 2^-147,
-// which holds for e = D + 12 u S + 2^-140: D <= u S except for numbers that underflow, and D <= S
-// for those. By symmetry the same holds for the high bound. All operations are monotonic, so nested
-// boxes of the mesh give nested boxes of the instance.
+// To show: the low bound b of a box is at or below the float before each corner's coordinate c.
+// High bounds are symmetric. Let u = 2^-24, the unit roundoff of float, and on one axis
+//   (m, m3): the row of the transform: m has three elements m_k, and m3 is the translation;
+//   m': m rounded to float; V_k: the largest magnitude of the mesh's bounds along axis k;
+//   S = sum |m_k| V_k + |m3|; D = sum |m_k - m'_k| V_k; v: a corner in the mesh.
+// 1. c = float32(double(m.v + m3)) differs from m.v + m3 by at most 1.01 u S + 2^-150.
+// 2. The float before c is at most 2.02 u S + 2^-149 below c.
+// 3. b = float32(low + m'.x), with low <= m3 - e, and x_k the end of the mesh's box on axis k with
+//    the lesser product m'_k x_k. So m'.x <= m'.v <= m.v + D.
+// 4. The three products and three sums of b have an error of at most 4.1 u (S + e) + 3 2^-150.
+// So it suffices that e >= D + (4.1 + 1.01 + 2.02) u S + 4.1 u e + 2^-147. The code uses
+// e = D + 12 u S + 2^-140, which suffices because D <= u S, or D <= S if elements underflow.
+// All operations are monotonic, so nested boxes of the mesh give nested boxes of the instance.
 
 namespace raygate {
 
@@ -51,7 +51,7 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Nod
   for (int end = 0; end < 2; ++end) {
     for (int k = 0; k < 3; ++k) bounds[end][k] = load<FloatLanes>(from.bounds[end][k]);
   }
-  // Boxes of absent children are set separately, as their infinite bounds times 0 are NaN.
+  // Boxes of absent children are set separately: their infinite bounds times 0 are NaN.
   const IntLanes absent = bounds[0][0] > bounds[1][0];
   for (int k = 0; k < 3; ++k) {
     FloatLanes low = FloatLanes{} + at.low[k], high = FloatLanes{} + at.high[k];

@@ -8,32 +8,32 @@
 
 // Why no true hit is culled
 //
-// Let the ray hit a triangle at t* > 0, t* at most the exact cutoff, I its direction, and u =
-// 2^-24. On each axis t* I = x - O for a coordinate x inside the triangle's box, which the BVH
-// stores at least one float, so at least 2^-149, wider: low' + 2^-149 <= x <= high' - 2^-149. By
-// symmetry let I > 0; near = low', far = high'.
+// Let a ray hit a triangle at the exact distance t* > 0, and let t >= t* be the ray's cutoff. To
+// show: no axis has an entry later than t* (1 + 3.1 u), and exits and stored cutoff are later than
+// that. Here u = 2^-24 is the unit roundoff of binary32.
 //
-// Entry: float32((near - O) * inverse_near). A difference of floats has a relative error of u and
-// never underflows; with |coordinates| <= 2^126 it does not overflow.
-//   * I >= 2^-100: inverse_near = float32(1/I), a normal number with a relative error of u. The
-//     product has a relative error of u, or an error of 2^-150 if it underflows; (near - O) <= t* I
-//     - 2^-149 and 1/I > 1/2, so the widening covers the 2^-150, and the entry is at most t* (1 +
-//     3.1 u), or negative. The product overflows only if t* > 2^127, but on the axis of the largest
-//     I, in [1, 2), t* <= 2^127.
-//   * I < 2^-100, or 0: inverse_near = 2^100 <= 1/I, so a positive entry is no later than above,
-//     and a negative or zero one never later than 0. With I = 0, near - O < 0.
+// On one axis, let O and I be the coordinates of origin and direction. By symmetry let I >= 0. The
+// hit's coordinate x = O + t* I is inside the triangle's box. The BVH stores the box [near, far]
+// wider by at least one float, so by at least 2^-149: near + 2^-149 <= x <= far - 2^-149.
+//
+// Entry: float32((near - O) * inverse_near). A difference of floats has a relative error of u. It
+// never underflows, and does not overflow because |coordinates| <= 2^126.
+//   * I >= 2^-100: inverse_near = float32(1/I) is normal and has a relative error of u. The product
+//     has a relative error of u, or an error of 2^-150 if it underflows. The latter is made up for
+//     by the widening: near - O <= t* I - 2^-149, and 1/I > 1/2. With three relative errors, the
+//     entry is at most t* (1 + 3.1 u) or at most 0. The product overflows only if t* > 2^127, which
+//     cannot be: on the axis with I in [1, 2), t* = (x - O) / I <= 2^127.
+//   * I < 2^-100: inverse_near = 2^100 <= 1/I, so a positive entry is no later than for 1/I, and
+//     another is not later than 0. If I = 0, then x = O and near - O < 0.
 // Exit: float32((far - O) * inverse_far).
-//   * I >= 2^-100: inverse_far = float32((1 + 8 u) float32(1/I)) (Ize, "Robust BVH ray traversal",
-//     2013, grows the exit likewise). Four roundings: the exit is at least t* (1 + 8 u) (1 - u)^4 >
-//     t* (1 + 3.9 u); underflow is covered as above.
-//   * I < 2^-100: inverse_far = +infinity, and far - O > 0: the exit is +infinity.
-// Cutoff: stored as t (1 + 8 u), rounded up; finite, so that an entry of +infinity means that the
-// ray does not enter.
-// So the entry of every axis <= t* (1 + 3.1 u) < the exit of every axis and the cutoff, and the box
-// is visited.
+//   * I >= 2^-100: inverse_far = float32((1 + 8 u) float32(1/I)) (as in Ize, "Robust BVH ray
+//     traversal", 2013). With four roundings, the exit is at least t* (1 + 8 u) (1 - u)^4, which is
+//     more than t* (1 + 3.9 u). The widening makes up for underflow as above.
+//   * I < 2^-100: inverse_far = +infinity and far - O > 0, so the exit is +infinity.
+// Cutoff: stored as t (1 + 8 u), rounded up, but finite: boxes with entry +infinity are skipped.
 //
-// A product may be 0 * infinity = NaN (far = O, I = 0: a ray within a face that the widening has
-// moved away from its triangle). Comparisons are written so that a NaN is ignored.
+// A product is 0 * infinity = NaN if far = O and I = 0: the ray is in a face of the widened box,
+// outside the triangle's own box. Comparisons are written so that a NaN is ignored.
 
 namespace raygate {
 namespace {
@@ -43,7 +43,7 @@ constexpr float kFarthest = std::numeric_limits<float>::max();  // larger than a
 }  // namespace
 
 PacketTraversal::PacketTraversal(const Bvh& bvh, int octant) : bvh_(&bvh), octant_(octant) {
-  rays_.cutoff = FloatLanes{} - 1.0f;  // below any entry, as there is no ray yet
+  rays_.cutoff = FloatLanes{} - 1.0f;  // below any entry, because there is no ray yet
   stack_[0] = {{0, 0}, 0.0f, 0xFF};
 }
 
@@ -102,7 +102,7 @@ LeafVisits PacketTraversal::next_leaf() {
         if (child.lanes == 0) continue;
         tree.prefetch(child.child);
         enter = enter <= rays_.cutoff ? enter : FloatLanes{} + kFarthest;
-        // Sorts as the hardware sorts: by entry without its last three bits, then by index.
+        // Same order as in hardware: by entry without its last three bits, then by child index.
         child.entry = std::bit_cast<float>(std::bit_cast<std::int32_t>(-largest_of(-enter)) & ~7);
         int place = depth_++;
         for (; place > bottom && stack_[place - 1].entry <= child.entry; --place) {

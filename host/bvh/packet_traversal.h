@@ -28,8 +28,8 @@ struct LeafVisits {
   [[nodiscard]] const LeafVisit* end() const { return visits.data() + count; }
 };
 
-/// A traversal, roughly front to back, that stops at every leaf and can be resumed. All its rays
-/// have one octant. Many packets in flight keep a hit-test unit busy while each awaits its results.
+/// A traversal, roughly front to back, that stops at every leaf and can be resumed. All rays have
+/// one octant. With many packets in flight, a hit-test unit is busy while packets await results.
 ///
 /// Box tests are conservative: no ray misses a triangle that it hits in exact arithmetic at a
 /// distance up to its cutoff (proof in packet_traversal.cpp). A ray also visits other triangles
@@ -43,7 +43,7 @@ class PacketTraversal {
   /// Sets the ray of an unused lane. Must be called before the first next_leaf().
   void set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction);
 
-  /// Restricts the ray in `lane` to distances up to `t` henceforth.
+  /// Restricts the ray in `lane` to distances up to `t` from now on.
   void set_cutoff(int lane, double t);
 
   /// Returns the next leaf that any ray meets.

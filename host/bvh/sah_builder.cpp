@@ -98,7 +98,8 @@ RAYGATE_INLINE void cut_between_slices(std::span<const Primitive> run, const Sli
       ++counts[axis][slice[axis]];
     }
   };
-  // Neighbours are often in the same bins; alternating between the halves avoids dependencies.
+  // Successive primitives are often in the same bins. Alternating between the halves of the range
+  // avoids waiting for a bin's last update.
   const std::size_t half = run.size() / 2;
   for (std::size_t i = 0; i < half; ++i) {
     put(run[i]);
@@ -209,7 +210,7 @@ class SahBuilder {
   }
 
  private:
-  /// Splits a range in two, or makes it a leaf, without `parts`, if it has a single primitive.
+  /// Splits a range into parts[0] and parts[1]. A range of one primitive becomes a leaf instead.
   void split(const Run& run, Run* parts) {
     if (run.size() == 1) {
       tree_.nodes[run.parent].child[run.side] = tree_.size() + run.begin;

@@ -1,5 +1,4 @@
-// SAH builder: splits primitives into a binary tree by the surface area heuristic, with boxes in
-// vector registers.
+// SAH builder: splits primitives into a binary tree by the surface area heuristic (SAH).
 #pragma once
 
 #include <algorithm>
@@ -47,7 +46,7 @@ RAYGATE_INLINE Box box_around(const glm::vec3& a, const glm::vec3& b, const glm:
   // the negative number of least magnitude for both zeros.
   const IntLanes bits = reinterpret_cast<IntLanes>(box);
   const IntLanes zero = (bits & 0x7FFFFFFF) == 0;
-  const IntLanes below = bits + ((bits > 0) | 1);  // -1 where positive: no lane overflows
+  const IntLanes below = bits + ((bits > 0) | 1);  // adds -1 to positive bits, 1 to others
   return reinterpret_cast<Box>(zero ? IntLanes{} + static_cast<std::int32_t>(0x80000001u) : below);
 }
 
@@ -73,9 +72,8 @@ struct Primitive {
 
 /// A binary BVH with one primitive per leaf, split top-down by the surface area heuristic (Wald,
 /// "On fast construction of SAH-based bounding volume hierarchies", 2007). A node covers a range of
-/// `primitives`, which the builder sorts; the node whose range is split at m is nodes[m]. So each
-/// thread knows where its nodes are stored, and the BVH does not depend on which thread builds a
-/// part.
+/// `primitives`, which the builder reorders. The node whose range is split at index m is nodes[m],
+/// so nodes are stored at the same index whichever thread builds them.
 struct BinaryBvh {
   /// Index of a node, or size() plus the index of a leaf's primitive.
   using Ref = std::uint32_t;
@@ -86,9 +84,8 @@ struct BinaryBvh {
     std::uint32_t first, count;  ///< range of primitives
   };
 
-  /// Bounds are finite with a magnitude of at most 2^126; there are fewer than 2^31 primitives. No
-  /// leaf is deeper than `max_depth` (the root's depth is 0), unless a balanced tree would be
-  /// deeper.
+  /// Bounds are finite with a magnitude of at most 2^126; there are fewer than 2^31 primitives. The
+  /// depth is at most `max_depth` (root: 0), or the depth of a balanced tree if this is larger.
   BinaryBvh(std::vector<Primitive> boxes, int max_depth, int threads);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(primitives.size()); }

@@ -37,18 +37,18 @@ RAYGATE_INLINE bool any_leaf(const Bvh& bvh, const Boxes& boxes, const Visit& vi
 
 // Why no true hit is culled
 //
-// packet_traversal.cpp proves it for one ray, whose entry into a box is the maximum of 0 and
-// float32((near - O) * inverse_near) of each axis, and whose exit is the minimum of its cutoff and
-// float32((far - O) * inverse_far). Both inverses have the sign of the direction's component, and
-// never grow with its magnitude, as rounding is monotonic. So bounds with inverse_near for a
-// magnitude no smaller than that of any ray, and inverse_far for one no larger, enter
-//   * no later than any ray, if near - O has the sign of I;
-//   * at 0 or before, as the rays do, otherwise;
-// and leave no earlier than any ray, if far - O has the sign of I (otherwise no ray hits anything
-// in the box). Their cutoff is at least that of each ray.
+// packet_traversal.cpp has the proof for one ray with origin O and direction I. The ray's entry
+// into a box is the maximum of 0 and float32((near - O) * inverse_near) of each axis; its exit is
+// the minimum of its cutoff and float32((far - O) * inverse_far) of each axis.
+//
+// Bounds of several rays use inverse_near of a component no smaller in magnitude than any ray's,
+// and inverse_far of a component no larger. Inverses do not grow with the magnitude, so
+// |inverse_near| is at most, and |inverse_far| at least, the value of each ray.
+// If near - O has the sign of I, the bounds enter no later than any ray; otherwise all enter at 0.
+// If far - O has the sign of I, the bounds leave no earlier than any ray; otherwise no ray hits
+// anything in the box. The cutoff of the bounds is at least each ray's cutoff.
 
-/// Direction components with a smaller magnitude count as 0. Exit distances are multiplied by
-/// kExitGrowth. Both are the same for single rays and packets.
+/// Direction components below kSmallestComponent count as 0. Exits are multiplied by kExitGrowth.
 inline constexpr float kSmallestComponent = 0x1p-100f;
 inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
 
@@ -57,9 +57,9 @@ inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
   return (direction.x < 0.0f ? 1 : 0) | (direction.y < 0.0f ? 2 : 0) | (direction.z < 0.0f ? 4 : 0);
 }
 
-/// Returns the distance beyond which boxes can be skipped for a ray with maximum distance `t`: t (1
-/// + 8 u) rounded up, and finite, so that an entry of +infinity means that a box is not entered.
-/// For negative t returns -1, so that every box is skipped.
+/// Returns the distance beyond which boxes can be skipped for a ray with maximum distance `t`:
+/// t (1 + 2^-21), rounded up. The result is at most the largest float, so that boxes with an entry
+/// of +infinity are skipped. For negative t the result is -1: every box is skipped.
 [[nodiscard]] inline float cutoff_beyond(double t) {
   constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float; larger than any t or entry
   if (t < 0.0) return -1.0f;
@@ -87,9 +87,9 @@ struct PacketBounds {
   }
 };
 
-/// Sets the origins of a ray's entries and exits so that rounding the ray to binary32 culls no box.
-/// A rounded direction adds a relative error of 2.1 u to entries and exits. For entries, the growth
-/// in cutoff_beyond covers this error; for exits, `inverse_far` grows once more.
+/// Sets the origins for computing entries and exits, so that rounding a ray to binary32 culls no
+/// box. Rounding the direction changes entries and exits by a relative 2.1 * 2^-24. For entries,
+/// the growth in cutoff_beyond covers this error; for exits, `inverse_far` grows once more.
 RAYGATE_INLINE void spread(const ExactRay& ray, float (&entry)[3], float (&exit)[3],
                            float (&inverse_far)[3]) {
   const float growth = is_binary32(ray.direction) ? 1.0f : kExitGrowth;
@@ -101,7 +101,7 @@ RAYGATE_INLINE void spread(const ExactRay& ray, float (&entry)[3], float (&exit)
   }
 }
 
-/// Bounds of a ray that may be rounded to binary32.
+/// Bounds of a binary64 ray, computed from the ray rounded to binary32.
 struct RoundedBounds : PacketBounds {
   float exit[3];
 

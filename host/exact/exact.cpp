@@ -10,34 +10,34 @@
 namespace raygate {
 namespace {
 
-constexpr double kU = 0x1p-53;  // half an ulp of 1 in double
+constexpr double kU = 0x1p-53;  // the unit roundoff of double
 
 /// A value computed in double and a bound of its error. The bound is 0 only if all terms of the
-/// value are exactly 0, as in planes that are parallel to an axis.
+/// value are exactly 0, for example in planes that are parallel to an axis.
 struct Estimate {
   double value, error;
   [[nodiscard]] bool sure() const { return std::abs(value) > error || error == 0.0; }
   [[nodiscard]] int sign() const { return (value > 0.0) - (value < 0.0); }
 };
 
-/// A cross product whose factors are rounded differences, and for each component the sum of the
-/// magnitudes of its two products. Every term of a component has four roundings (two differences, a
-/// product, a subtraction): its error is less than 5u times its magnitude.
+/// A cross product of two rounded differences. `magnitude` is the sum of the magnitudes of the two
+/// products of each component. The error of a component is less than 5 kU magnitude: each product
+/// has four roundings (two differences, the product, the subtraction).
 struct Cross {
   glm::dvec3 value, magnitude;
 
   Cross(const glm::dvec3& u, const glm::dvec3& v) { value = cross(u, v, magnitude); }
 
-  /// Returns whether each component's error is surely at most 2^-34 of |value|_1. The bound is 8u,
-  /// not 5u, to cover the rounding of this comparison.
+  /// Returns whether each component's error is surely at most 2^-34 times |x| + |y| + |z| of
+  /// `value`. The factor is 8 kU, not 5 kU, to cover the rounding of this comparison.
   [[nodiscard]] bool accurate() const {
     const double size = std::abs(value.x) + std::abs(value.y) + std::abs(value.z);
     return 8.0 * kU * largest(magnitude) <= 0x1p-34 * size;
   }
 };
 
-/// Returns u . cross. Each term has at most four more roundings (u itself, a product, two sums),
-/// eight in all; 10u covers the rounding of the bound.
+/// Returns u . cross. Each term has at most eight roundings: four in `cross`, one in u, one in the
+/// product and two in the sums. The factor 10 kU, not 8 kU, covers the rounding of the bound.
 Estimate dot(const glm::dvec3& u, const Cross& cross) {
   const double value = u.x * cross.value.x + u.y * cross.value.y + u.z * cross.value.z;
   const double magnitude = std::abs(u.x) * cross.magnitude.x + std::abs(u.y) * cross.magnitude.y +
@@ -72,7 +72,7 @@ Expansion<96> exact_slope(const glm::dvec3& direction, const Corners& t) {
   return exact_dot(direction, exact_normal(t));
 }
 
-/// t = D / (I . N) at a triangle's plane, with estimates of both parts.
+/// Estimates t = D / (direction . N) at a plane, for N of triangle_normal and D of plane_distance.
 struct Fraction {
   Estimate numerator, denominator;
 
@@ -83,7 +83,8 @@ struct Fraction {
   }
 };
 
-/// Returns a * b. Its error includes those of a and b, and 2 u for rounding value and bound.
+/// Returns a * b. The error bound is the effect of both factors' errors plus kU |value|, the error
+/// of rounding the product. The factors 1.000001 and 2 cover the rounding of the bound itself.
 Estimate product(const Estimate& a, const Estimate& b) {
   const double value = a.value * b.value;
   return {value, 1.000001 * (a.error * std::abs(b.value) + std::abs(a.value) * b.error +
@@ -91,7 +92,7 @@ Estimate product(const Estimate& a, const Estimate& b) {
                      2.0 * kU * std::abs(value)};
 }
 
-/// Computes order_of_planes exactly. Products of this size are not allocated on the stack.
+/// Computes order_of_planes exactly. The products are too large for the stack.
 int exact_order_of_planes(const ExactRay& ray, const Corners& first, const Corners& second) {
   using Product = Expansion<2 * 192 * 96>;
   const auto left = std::make_unique_for_overwrite<Product>();
@@ -105,7 +106,8 @@ int exact_order_of_planes(const ExactRay& ray, const Corners& first, const Corne
   return result->sign();
 }
 
-/// Returns the sign of D1 (I . N2) - D2 (I . N1): the signs of t1 - t2 and both I . N, multiplied.
+/// Returns the sign of D1 S2 - D2 S1, for t1 = D1 / S1 and t2 = D2 / S2 as in Fraction (S is the
+/// denominator). This is the product of the signs of t1 - t2, S1 and S2.
 int order_of_planes(const ExactRay& ray, const Corners& first, const Corners& second) {
   const Fraction t1(ray, first), t2(ray, second);
   const Estimate left = product(t1.numerator, t2.denominator);
@@ -123,7 +125,7 @@ int order_of_planes(const ExactRay& ray, const Corners& first, const Corners& se
 bool has_exact_difference(double a, double b) { return two_sum(a, -b).error == 0.0; }
 
 glm::dvec3 exact_origin(std::span<const glm::dvec3> positions) {
-  // The box of the middle half of the coordinates, so that a few far positions do not matter.
+  // Bounds of the middle half of the coordinates, so that a few far positions do not matter.
   glm::dvec3 low, high;
   std::vector<double> sorted(positions.size());
   const auto quarter = static_cast<std::ptrdiff_t>(positions.size() / 4);
@@ -161,7 +163,7 @@ bool is_scaled(const glm::vec3& direction) {
 }
 
 glm::vec3 scaled_direction(const glm::dvec3& direction) {
-  // Scales by a power of two, exactly: by one made from bits or, for extreme exponents, by scalbn.
+  // The factor is a power of two made from bits. For extreme exponents, scalbn scales instead.
   constexpr std::uint64_t kExponent = 0x7FF0000000000000, kOne = 0x3FF0000000000000;
   const double size = largest(direction);
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(size) & kExponent;
@@ -188,10 +190,11 @@ int orient3d(const glm::dvec3& origin, const Corners& t) {
   return is_corner ? 0 : exact_plane(origin, t).sign();
 }
 
-// If A, B, C are independent, the tilted I is a combination of them with three non-zero weights:
-// I . (B x C) / det(A, B, C), and so on cyclically. I points into the triangle if all three are
-// positive. So all edges must have the sign of the plane, and then t = det / (I . N) > 0, as I . N
-// is the sum of the three products.
+// Let A, B, C be the corners minus the origin, det their determinant and I the tilted direction.
+// If det is not 0, then I = x A + y B + z C with x = I . (B x C) / det; y and z follow by cyclic
+// permutation. Tilting makes x, y and z non-zero. I points into the triangle if all three are
+// positive: the three edge sides must have the sign of det, which is orient3d.
+// Then t = det / (I . (B x C) + I . (C x A) + I . (A x B)) is positive, too.
 bool hits_triangle(const ExactRay& ray, const Corners& t) {
   if (!is_usable(ray.direction)) return false;
   const int side = orient3d(ray.origin, t);
@@ -210,8 +213,8 @@ bool is_ahead(const ExactRay& ray, const Corners& t) {
   return orient3d(ray.origin, t) * direction_side(ray.direction, t) > 0;
 }
 
-// If doubles cancel too much, D and I . N are computed exactly and then rounded to double, with an
-// error of at most an ulp each.
+// If the error of numerator or denominator exceeds 2^-37 of its value, both are computed exactly
+// and then rounded to double, with an error of at most an ulp each.
 Interval hit_distance(const ExactRay& ray, const Corners& triangle) {
   const auto& [n, d] = Fraction(ray, triangle);
   if (n.error <= 0x1p-37 * std::abs(n.value) && d.error <= 0x1p-37 * std::abs(d.value)) {
@@ -225,9 +228,10 @@ Interval hit_distance(const ExactRay& ray, const Corners& triangle) {
   return {t * (1.0 - 16.0 * kU), t * (1.0 + 16.0 * kU)};
 }
 
-// The weights are I . (B x C), I . (C x A) and I . (A x B) over their sum S. If each has an error
-// of at most e = 2^-37 |S|, that of S is 3 e, and that of a quotient 4 * 2^-37. Clamping to [0, 1]
-// only reduces the error.
+// The error of u and v is at most 2^-34. They are quotients w / S of one of the three edge products
+// direction . (A x B) and the sum S of all three, with w / S in [0, 1].
+// Each product has an error of at most e = 2^-37 |S|; otherwise all are computed exactly.
+// So the error of S is at most 3 e. The error of w / S is (e + 3 e) / |S| = 2^-35, plus roundings.
 Barycentric barycentric(const ExactRay& ray, const Corners& triangle) {
   double weights[3], sum = 0.0, error = 0.0;
   const auto corner = [&](int k) -> const glm::dvec3& { return triangle[std::size_t(k) % 3]; };
@@ -248,7 +252,7 @@ Barycentric barycentric(const ExactRay& ray, const Corners& triangle) {
       sum += weights[k];
     }
   }
-  const auto within = [](double share, double most) {
+  const auto within = [](double share, double most) {  // clamping only reduces errors
     return std::max(0.0, std::min(share, most));
   };
   const double u = within(weights[1] / sum, 1.0);
@@ -261,7 +265,7 @@ PreciseHit precise_hit(const ExactRay& ray, const Corners& triangle) {
   return {static_cast<float>(t), glm::vec3(t * ray.direction)};
 }
 
-// D and I . N of a hit have the same sign, as t > 0.
+// order_of_planes includes the signs of S1 and S2, which are those of D1 and D2 because t > 0.
 int compare_hits(const ExactRay& ray, const Corners& first, const Corners& second) {
   return orient3d(ray.origin, first) * orient3d(ray.origin, second) *
          order_of_planes(ray, first, second);
@@ -276,7 +280,8 @@ int compare_hit_to_limit(const ExactRay& ray, const Corners& triangle, double li
   return orient3d(ray.origin, triangle) * excess.sign();
 }
 
-// At O + t I, t = D1 / (I . N1), the other plane's D2 becomes D2 - t (I . N2).
+// Let t = D1 / S1 for `hit` and D2 / S2 for `other`, as in Fraction. D of `other` seen from the hit
+// is D2 - t S2 = (D2 S1 - D1 S2) / S1, and S1 has the sign of D1 because t > 0.
 int plane_side_at_hit(const ExactRay& ray, const Corners& hit, const Corners& other) {
   return orient3d(ray.origin, hit) * order_of_planes(ray, other, hit);
 }
@@ -311,8 +316,8 @@ int area_sign(std::span<const glm::dvec2> polygon, double& area) {
     magnitude += std::abs(left) + std::abs(right);
   }
   area = 0.5 * twice_area;
-  // 2 n products, n differences and n additions, each with an error of at most u times the
-  // magnitudes.
+  // The error of twice_area is at most (n + 2) kU magnitude for n vertices: kU magnitude for all
+  // products, as much for all differences, and n times as much for n sums. The bound exceeds it.
   const double bound = 2.0 * static_cast<double>(polygon.size() + 1) * kU * magnitude;
   if (std::abs(twice_area) > bound) return twice_area > 0.0 ? 1 : -1;
 

@@ -14,14 +14,12 @@
 
 namespace raygate {
 
-/// The vertices of a triangle, in its order. Coordinates are multiples of 2^-149, as floats are.
+/// The vertices of a triangle. Coordinates are multiples of 2^-149, the smallest positive float.
 using Corners = std::array<glm::dvec3, 3>;
-/// Corners in binary32.
-using FloatCorners = std::array<glm::vec3, 3>;
+using FloatCorners = std::array<glm::vec3, 3>;  ///< corners in binary32
 [[nodiscard]] inline Corners widened(const FloatCorners& t) {
   return {glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
 }
-
 [[nodiscard]] inline FloatCorners rounded(const Corners& t) {
   return {glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2])};
 }
@@ -35,28 +33,28 @@ template <class T>
 /// Largest magnitude of coordinates that BVHs and predicates accept.
 inline constexpr double kMostCoordinate = 0x1p126;
 
-/// Returns whether a - b is a double.
+/// Returns whether the exact a - b is a double.
 [[nodiscard]] bool has_exact_difference(double a, double b);
 
-/// Returns an origin near the middle of most positions. Differences of positions from it are exact
-/// in double and up to kMostCoordinate. Each coordinate is a multiple of the least power of two
-/// that achieves this, or 0 if none does.
+/// Returns an origin near the middle of most positions, so that all `position - origin` are exact
+/// in double and at most kMostCoordinate in magnitude. Each coordinate is a multiple of the least
+/// power of two for which this is possible, or 0 if it is possible for none.
 [[nodiscard]] glm::dvec3 exact_origin(std::span<const glm::dvec3> positions);
 
-/// Returns the nearest multiple of 2^-149.
+/// Returns the multiple of 2^-149 nearest to x.
 [[nodiscard]] inline double on_float_grid(double x) {
   return std::abs(x) < 0x1p-97 ? std::nearbyint(x * 0x1p149) * 0x1p-149 : x;
 }
 
-/// Returns 2^-30 ulp(x) for a normal float. Doubles that round to x are multiples of it.
+/// Returns 2^-30 ulp(x) for a normal float x. All doubles that round to x are multiples of it.
 [[nodiscard]] inline double unit_of_rest(float x) {
   constexpr std::uint32_t kField = 0xFF;
   const std::uint64_t exponent = std::bit_cast<std::uint32_t>(x) >> 23 & kField;
   return std::bit_cast<double>((exponent + (1023 - 127 - 53)) << 52);
 }
 
-/// Returns x minus its nearest float, as a multiple of unit_of_rest(). Exact if x is a multiple of
-/// 2^-149.
+/// Returns the rest of x: x minus `nearest`, its nearest float, in units of unit_of_rest(nearest).
+/// Exact if x is a multiple of 2^-149.
 [[nodiscard]] inline std::int32_t rest_of(double x, float nearest) {
   return static_cast<std::int32_t>((x - double{nearest}) / unit_of_rest(nearest));
 }
@@ -65,7 +63,7 @@ inline constexpr double kMostCoordinate = 0x1p126;
   return double{nearest} + rest * unit_of_rest(nearest);
 }
 
-/// Return the nearest float that is not above x, or not below x.
+/// Return the largest float that is not above x, and the smallest that is not below x.
 [[nodiscard]] inline float float_below(double x) {
   const auto nearest = static_cast<float>(x);
   return nearest > x ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
@@ -93,8 +91,8 @@ template <class T>
 /// Returns the unit vector of `v`, which is not 0, without overflow or underflow of squares.
 [[nodiscard]] inline glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest(v)); }
 
-/// Returns whether the largest component's magnitude is in [1, 2), as intersectors, BVHs and units
-/// require. Scaling by a power of two changes neither rounding nor hits.
+/// Returns whether the largest component's magnitude is in [1, 2). Intersectors, BVHs and the
+/// hardware require this. Scaling by a power of two changes neither rounding nor hits.
 [[nodiscard]] bool is_scaled(const glm::vec3& direction);
 
 /// Returns `direction`, which is finite and not 0, scaled (see is_scaled) and rounded to float.
@@ -117,7 +115,7 @@ struct Interval {
 /// A hit, rounded to float.
 struct PreciseHit {
   float t = 0.0f;
-  glm::vec3 point{0.0f};  ///< P = t I, relative to the ray's origin
+  glm::vec3 point{0.0f};  ///< t times the direction: the position relative to the ray's origin
 };
 
 /// A ray of the exact predicates, in binary64. Coordinates are multiples of 2^-149.
@@ -127,23 +125,23 @@ struct ExactRay {
 
   ExactRay() = default;
   ExactRay(const glm::dvec3& from, const glm::dvec3& to) : origin(from), direction(to) {}
-  // NOLINTNEXTLINE(google-explicit-constructor): every Ray is one
+  // NOLINTNEXTLINE(google-explicit-constructor): every Ray is exactly an ExactRay
   ExactRay(const Ray& ray) : origin(ray.origin), direction(ray.direction) {}
 };
 
-/// Returns the sign (-1, 0, 1) of I . (A x B), for A = a - O and B = b - O: the side on which the
-/// ray passes the edge from `a` to `b`. If it is exactly 0, returns the sign for a direction tilted
-/// by an infinitesimal towards +x, by a smaller one towards +y, and by a still smaller one towards
-/// +z. The result is 0 only for an edge in line with the origin.
+/// Returns the side on which the ray passes the edge from `a` to `b`: the sign (-1, 0, 1) of
+/// direction . (A x B) for A = a - origin and B = b - origin. If this product is exactly 0, returns
+/// the sign for a direction tilted by an infinitesimal e towards +x, by e^2 towards +y and by e^3
+/// towards +z. The result is 0 only if the edge's line contains the origin.
 [[nodiscard]] int edge_side(const ExactRay& ray, const glm::dvec3& a, const glm::dvec3& b);
 
-/// Returns the sign of the determinant of A, B, C: the side of the triangle's plane on which the
-/// origin is; 0 for an origin in the plane and for a triangle without area.
+/// Returns the side of the triangle's plane on which the origin is: the sign of det(A, B, C) for
+/// A, B, C the corners minus the origin; 0 if the origin is in the plane or the area is 0.
 [[nodiscard]] int orient3d(const glm::dvec3& origin, const Corners& triangle);
 
-/// Returns whether the ray, tilted as above, hits the triangle. Neighbours in a closed mesh agree
-/// about their shared edge because both use the same tilted ray: exactly one triangle of a fan is
-/// hit. A triangle behind the origin, or whose plane contains the origin, is never hit.
+/// Returns whether the ray, tilted as in edge_side, hits the triangle. Neighbours in a closed mesh
+/// agree about their shared edge because both use the same tilted ray: of the triangles around a
+/// vertex, one is hit. Triangles behind the origin, or with the origin in their plane, never are.
 [[nodiscard]] bool hits_triangle(const ExactRay& ray, const Corners& triangle);
 
 /// Returns whether the ray's line meets the triangle's plane in front of the origin, at t > 0.
@@ -152,8 +150,8 @@ struct ExactRay {
 /// Returns bounds of t for a triangle that the ray hits (hits_triangle()). high <= low (1 + 2^-34).
 [[nodiscard]] Interval hit_distance(const ExactRay& ray, const Corners& triangle);
 
-/// The position of a hit on its triangle: P = (1 - u - v) A + u B + v C. The error of u and of v is
-/// at most 2^-34; none of the three weights is negative or -0.
+/// The position P of a hit on the triangle of corners a, b, c: P = (1 - u - v) a + u b + v c. The
+/// errors of u and v are at most 2^-34. None of the weights u, v and 1 - u - v is negative or -0.
 struct Barycentric {
   double u, v;
 };
@@ -161,25 +159,25 @@ struct Barycentric {
 /// Returns the position of a hit on a triangle that the ray hits (hits_triangle()).
 [[nodiscard]] Barycentric barycentric(const ExactRay& ray, const Corners& triangle);
 
-/// Returns t and P of a hit, computed from the corners. The error of each word is at most (1 +
-/// 2^-10) / 2 times the distance of neighbouring floats, at any angle.
+/// Returns t and point of a hit, computed from the corners. The error of t and of each coordinate
+/// is at most (1 + 2^-10) / 2 ulp of float, at any angle of incidence.
 [[nodiscard]] PreciseHit precise_hit(const ExactRay& ray, const Corners& triangle);
 
-/// Returns the exact sign of t(first) - t(second). Both must be hits.
+/// Returns the exact sign of t(first) - t(second). The ray must hit both triangles.
 [[nodiscard]] int compare_hits(const ExactRay& ray, const Corners& first, const Corners& second);
 
-/// Returns the exact sign of t - limit. The triangle must be hit; 2^-149 <= limit < 2^128.
+/// Returns the exact sign of t - limit. The ray must hit the triangle; 2^-149 <= limit < 2^128.
 [[nodiscard]] int compare_hit_to_limit(const ExactRay& ray, const Corners& triangle, double limit);
 
-/// Returns orient3d of `other` for the exact point at which the ray hits `hit`.
+/// Returns orient3d(P, other) for the exact point P at which the ray hits the triangle `hit`.
 [[nodiscard]] int plane_side_at_hit(const ExactRay& ray, const Corners& hit, const Corners& other);
 
-/// Returns the exact sign of I . N. A direction with the sign of orient3d(origin, triangle) goes
-/// towards the plane, one with the opposite sign away from it.
+/// Returns the exact sign of direction . N for the normal N of triangle_normal(): the sign of
+/// orient3d(origin, triangle) if the ray moves towards the plane, the opposite if it moves away.
 [[nodiscard]] int direction_side(const glm::dvec3& direction, const Corners& triangle);
 
-/// Returns D = A . ((b-a) x (c-a)) rounded to double, with a relative error of at most 2^-32 and
-/// the exact sign.
+/// Returns D = (a - origin) . ((b - a) x (c - a)) in double for the corners a, b, c. The relative
+/// error is at most 2^-32, and the sign is exact.
 [[nodiscard]] double plane_distance(const glm::dvec3& origin, const Corners& triangle);
 
 /// Returns (p - origin) x (q - p) in double. The error of each component is at most 2^-34 of the
@@ -187,7 +185,7 @@ struct Barycentric {
 [[nodiscard]] glm::dvec3 edge_normal(const glm::dvec3& origin, const glm::dvec3& p,
                                      const glm::dvec3& q);
 
-/// Returns (b-a) x (c-a), as accurate as edge_normal; 0 only if the corners are exactly collinear.
+/// Returns (b - a) x (c - a) with edge_normal's error bound; 0 only if a, b, c are exactly in line.
 [[nodiscard]] glm::dvec3 triangle_normal(const Corners& triangle);
 
 /// Returns 1 if a, b, c are in counter-clockwise order, -1 if clockwise, 0 if they are exactly

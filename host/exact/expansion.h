@@ -10,11 +10,11 @@
 namespace raygate {
 
 /// An exact real number: the sum of `size` non-zero doubles that do not overlap, of increasing
-/// magnitude; 0 has no parts. `Capacity` bounds the size and follows from the operations.
+/// magnitude. The number 0 has no parts. `Capacity` is the largest possible size.
 ///
-/// Every operation is exact as long as no product of two components underflows or overflows in
-/// double. Here all numbers are polynomials of degree at most 6 in multiples of 2^-149, so
-/// multiples of 2^-894 and, with coordinates up to 2^126, below 2^800.
+/// Every operation is exact as long as no product of two parts underflows or overflows in double.
+/// Predicates compute polynomials of degree at most 6 in coordinates, which are multiples of 2^-149
+/// up to 2^126. All products are therefore multiples of 2^-894 and below 2^800.
 template <int Capacity>
 struct Expansion {
   int size = 0;
@@ -25,7 +25,7 @@ struct Expansion {
   }
   /// Returns -1, 0 or 1: the sign of the largest part, which exceeds the sum of all others.
   [[nodiscard]] int sign() const { return size == 0 ? 0 : (parts[size - 1] > 0.0 ? 1 : -1); }
-  /// Returns the nearest double, or a neighbour of it.
+  /// Returns the double nearest to the exact number, or one of that double's neighbours.
   [[nodiscard]] double approximate() const {
     double sum = 0.0;
     for (int i = 0; i < size; ++i) sum += parts[i];
@@ -33,7 +33,7 @@ struct Expansion {
   }
 };
 
-/// An exact result as a sum, value + error.
+/// An exact result value + error, where `value` is the result rounded to double.
 struct ExactPair {
   double value, error;
 };
@@ -44,13 +44,13 @@ struct ExactPair {
   return {sum, (a - (sum - b_seen)) + (b - b_seen)};
 }
 
-/// Requires |a| >= |b|.
+/// Returns the exact sum a + b, like two_sum, but requires |a| >= |b|.
 [[nodiscard]] inline ExactPair fast_two_sum(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};
 }
 
-/// Computes Dekker's product: each factor is split in halves whose products are exact.
+/// Returns the exact a * b by Dekker's method: factors are split into halves with exact products.
 [[nodiscard]] inline ExactPair two_product(double a, double b) {
   constexpr double kSplitter = 134217729.0;  // 2^27 + 1
   const double product = a * b;
@@ -150,7 +150,6 @@ template <int N, int M>
 template <int N>
 using ExactVector = std::array<Expansion<N>, 3>;
 
-/// Returns a - b.
 [[nodiscard]] inline ExactVector<2> exact_difference(const glm::dvec3& a, const glm::dvec3& b) {
   return {exact_difference(a.x, b.x), exact_difference(a.y, b.y), exact_difference(a.z, b.z)};
 }

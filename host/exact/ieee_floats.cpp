@@ -9,9 +9,9 @@
 namespace raygate {
 namespace {
 
-/// Returns whether a a - (1 + 2 h) is fused for a = 1 + h, whose square does not fit the format:
-/// the result is 0 if the product is rounded, otherwise h^2. `volatile` prevents evaluation by the
-/// compiler.
+/// Returns whether the compiler fuses the operations of a * a - w, for a = 1 + h and w = 1 + 2 h.
+/// The exact product w + h^2 does not fit the format: the difference is 0 if the product is rounded
+/// and h^2 if it is fused. `volatile` prevents evaluation by the compiler.
 template <class T>
 bool is_fused(T h) {
   volatile T a = T(1) + h, whole = T(1) + T(2) * h;

@@ -1,5 +1,4 @@
-// IEEE 754 arithmetic with rounding to nearest, which exact decisions require: checks that it is in
-// use, and the hardware's operations.
+// IEEE 754 arithmetic, rounded to nearest: checking it, setting it, and the hardware's operations.
 #pragma once
 
 #include <bit>
@@ -12,14 +11,14 @@
 
 // Reproducibility guarantees
 //
-// The same program with the same inputs, and any number of threads, engine, unit and number of
-// lanes, gives the same bytes. On another machine, or with another compiler, if this file compiles
-// and its check passes:
-//   * every decision (hit or miss, order of hits, side) is the same, as it is exact;
-//   * polygon records, t, P and their errors have the same bits, as they use only IEEE 754
-//     addition, multiplication and division, in a fixed order, with any vector code;
-//   * images may differ in last digits where shading uses powers, sines or cosines of the C
-//     library, which IEEE 754 does not define. With the same version of the library they do not.
+// The same program with the same inputs writes the same bytes for any number of threads, engine,
+// unit and number of lanes. On another machine or with another compiler, the following holds if
+// this file compiles and require_ieee_floats() passes:
+//   * every decision (hit or miss, order of hits, side) is the same, because it is exact;
+//   * polygon records, hit distances, hit points and their error bounds have the same bits for any
+//     instruction set: they use only IEEE 754 +, *, / in a fixed order;
+//   * images may differ in the last digits where shading uses powers, sines or cosines of another
+//     version of the C library; IEEE 754 does not define these functions.
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     defined(__NO_SIGNED_ZEROS__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0)
@@ -30,9 +29,8 @@ static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<doubl
 
 namespace raygate {
 
-/// Sets IEEE 754 arithmetic on this thread, and on threads that it starts, for the lifetime of this
-/// object: rounding to nearest, subnormals kept, no traps. Then restores the thread's state,
-/// including flags.
+/// Sets IEEE 754 arithmetic (rounding to nearest, subnormals kept, no traps) on this thread, and on
+/// threads that it starts, until the destructor restores the thread's state, including flags.
 class IeeeFloats {
  public:
   IeeeFloats();
@@ -42,8 +40,8 @@ class IeeeFloats {
 
  private:
 #if defined(__SSE2__)
-  // Of the x87 state, only the rounding mode is saved, as it affects how the C library reads
-  // numbers. Saving the rest would take a microsecond, and no arithmetic here uses x87.
+  // Of the x87 state, only the rounding mode is saved: the C library uses it to read numbers.
+  // Saving all of the state would take a microsecond, and no arithmetic here uses x87.
   unsigned before_;  // MXCSR
   int rounding_;
 #else
@@ -79,7 +77,7 @@ struct Binary32 {
   static constexpr int fraction_bits() { return 23; }
 
  private:
-  /// Returns x, with the hardware's only NaN in place of any NaN.
+  /// Returns x, or the only NaN that the hardware produces if x is any NaN.
   static float canonical(float x) { return std::isnan(x) ? std::bit_cast<float>(0x7FC00000u) : x; }
 };
 

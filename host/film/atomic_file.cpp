@@ -165,7 +165,7 @@ void require_distinct(std::span<const fs::path> outputs, std::span<const fs::pat
 
 void require_writable(const fs::path& path) {
   AtomicFile probe(path);
-  // A pipe stays open until the program exits, as its reader would take closing for end of file.
+  // A pipe stays open until the program exits: its reader would take closing for the end of file.
   if (probe.is_stream() && fs::is_fifo(path)) probe.descriptor_ = -1;
 }
 

@@ -10,12 +10,12 @@
 
 namespace raygate {
 
-/// A file that is written under a temporary name in the target's folder and synced to disk;
-/// commit() renames it to the target. So the target is the complete old or the complete new file
-/// after any failure, and several files can be staged before the first is replaced.
+/// A file that is written under a temporary name in the target's folder and synced to disk.
+/// commit() renames it to the target, so after any failure the target is the complete old or the
+/// complete new file. Several files can be staged before the first target is replaced.
 ///
 /// Symbolic links are followed, also to missing targets; the permissions of an old file are kept.
-/// Other hard links of the old file keep its contents. Bytes for a device, a pipe or standard
+/// Other hard links of the old file keep the old contents. Bytes for a device, a pipe or standard
 /// output (/dev/stdout) are written immediately; a pipe without a reader is an error. All errors
 /// are InputError, "path: cannot write: reason".
 class AtomicFile {
@@ -31,7 +31,7 @@ class AtomicFile {
   void append(std::string_view bytes);
   /// Syncs the file to disk; nothing can be appended after that.
   void finish();
-  /// Finishes the file, renames it to the target and syncs the folder. At most once.
+  /// Finishes the file, renames it to the target and syncs the folder. Call it at most once.
   void commit();
   /// Returns the temporary name, or a stream's own name, for code that writes the file itself.
   [[nodiscard]] const std::filesystem::path& unnamed() const {
@@ -60,8 +60,8 @@ void require_distinct(std::span<const std::filesystem::path> outputs,
 /// Returns whether `file` is standard output.
 [[nodiscard]] bool is_standard_output(const std::filesystem::path& file);
 
-/// Throws the InputError that an AtomicFile for `path` would throw now. To be called before a long
-/// computation of the file's contents. Changes nothing.
+/// Throws the InputError that an AtomicFile for `path` would throw now. Changes nothing. Call it
+/// before a long computation of the file's contents.
 void require_writable(const std::filesystem::path& path);
 
 }  // namespace raygate

@@ -31,7 +31,7 @@ class Reader {
     if (std::int64_t{picture.width} * picture.height > kMaxPixels) {
       fail("more than " + std::to_string(kMaxPixels) + " pixels");
     }
-    // With the longest runs, a pixel takes 1/16 byte; a file this short cannot be complete.
+    // Even with the longest runs, a row takes more than one byte.
     if (rest_.size() < static_cast<std::size_t>(picture.height)) fail("it ends too early");
     std::vector<Rgbe> row(static_cast<std::size_t>(picture.width));
     for (int y = 0; y < picture.height; ++y) {

@@ -16,7 +16,7 @@ namespace raygate {
 
 /// Reads an environment map, OpenEXR (channels R, G, B) or Radiance HDR by its first bytes. `up` is
 /// not zero. The centre of the map points towards -z if +y is up, towards +y if +z is up. Negative
-/// values and NaN become 0; values are limited to 1e30. Throws InputError like read_exr, read_hdr.
+/// values and NaN become 0; values are limited to 1e30. Throws InputError, see read_exr, read_hdr.
 void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, Scene& scene);
 
 }  // namespace raygate

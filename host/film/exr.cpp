@@ -248,7 +248,7 @@ std::string encode_rows(const Film& film, const ExrMetadata& metadata, const Pix
     std::string bytes = stream.str();
     // If memory runs out, the library and the stream may omit a block silently.
     if (!has_pixels || holds_rows(bytes, film, window)) return bytes;
-  } catch (const Iex::BaseExc&) {  // NOLINT(bugprone-empty-catch): no file is in it to fail
+  } catch (const Iex::BaseExc&) {  // NOLINT(bugprone-empty-catch): out of memory
   }
   throw std::bad_alloc();
 }
@@ -260,9 +260,9 @@ int blocks_of(const PixelRect& window) { return (window.height() + kBlockRows - 
 
 }  // namespace
 
-// The library's threads deadlock if a block cannot be allocated, so they are not used. Threads
-// encode files of several blocks each, which are then joined into one file (header, block offsets,
-// blocks: "OpenEXR File Layout"). The bytes of a block do not depend on its file.
+// The library's threads deadlock if a block cannot be allocated, so they are not used. Instead, our
+// threads encode files of several blocks each. These are then joined into one file (header, block
+// offsets, blocks: "OpenEXR File Layout"). The bytes of a block do not depend on its file.
 std::string encode_exr(const Film& film, const ExrMetadata& metadata, int threads) {
   constexpr int kPerThread = 4;  // for load balance
   const int blocks = blocks_of(film.window);

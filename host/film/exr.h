@@ -16,7 +16,7 @@ namespace raygate {
 struct ExrMetadata {
   /// Texts: "software" (name and version), "scene" (file name without folders), "seed", and the
   /// options of `render` that the picture depends on. kPartialAttribute if the render is
-  /// unfinished: pixels without a sample are misses, others may have too few samples.
+  /// unfinished: pixels without a sample are misses, and other pixels may have too few samples.
   std::map<std::string, std::string> attributes{};
   /// Attribute "worldToCamera", as OpenEXR defines it: +x to the right of the picture, +y up,
   /// +z along the view. The matrix here is for column vectors, the file's for row vectors.
@@ -31,7 +31,7 @@ inline constexpr const char *kPartialAttribute = "partial",
 /// Returns an OpenEXR scan-line file of `film`, ZIP compressed (lossless), with the channels of
 /// channels_of(). The display window is the frame, the data window the film's. Equal arguments give
 /// equal bytes, for any number of threads. The bytes are read back and checked, because the library
-/// does not report all failures to allocate memory; then std::bad_alloc is thrown.
+/// does not report all failures to allocate memory. Throws std::bad_alloc for these.
 [[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata,
                                      int threads = 1);
 

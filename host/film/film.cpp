@@ -36,7 +36,7 @@ void add_sums(Film& film, bool with_error) {
   film.sums.shown.assign(pixels, 0.0f);
 }
 
-// Pixels of all arrays consist of 32-bit words, the same number for each part.
+// A pixel of any array consists of 32-bit words, the same number of words for each part.
 std::vector<Channel> channels_of(const Film& film) {
   std::vector<Channel> channels;
   const auto add = [&](const FilmField& field, const auto& values) {

@@ -167,7 +167,7 @@ struct FilmField {
   bool is_sum = false;  ///< written to files only if the film keeps its sums
 };
 
-/// Calls `visit` for each field with its array in each of `films`. This is the only list of arrays.
+/// Calls `visit` for each field with its array in each of `films`. No other code lists all arrays.
 template <class Visit, class... Films>
 void for_each_field(const Visit& visit, Films&... films) {
   visit(FilmField{"", "RGBA"}, films.color...);
@@ -189,8 +189,7 @@ static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
                   sizeof(Film) == 14 * sizeof(std::vector<int>) + 2 * sizeof(PixelRect),
               "for_each_field() has them all");
 
-/// Returns a film in which every pixel is a miss, with the optional channels of `extra` and
-/// without sums.
+/// Returns a film of misses, with the optional channels of `extra` and without sums.
 [[nodiscard]] Film make_film(int width, int height, const PixelRect& window,
                              const ExtraChannels& extra);
 
@@ -207,7 +206,7 @@ struct Channel {
   std::size_t stride;  ///< bytes from one pixel to the next; rows follow without a gap
 };
 
-/// Returns the channels of all arrays; sums need `keeps_sums` (`samples`: `keeps_sums` or `error`).
+/// Returns the channels of all arrays; sums only if `keeps_sums` (`samples` also with `error`).
 [[nodiscard]] std::vector<Channel> channels_of(const Film& film);
 
 /// Returns the channel's value at array index `index`; exact.

@@ -98,7 +98,7 @@ std::optional<std::string> different_picture(const FilmFile& found, const ExrMet
   if (frame != size(width, height)) {
     return "a frame of " + frame + ", expected " + size(width, height);
   }
-  std::vector<std::string> first{kSceneAttribute, "integrator"};  // others depend on these
+  std::vector<std::string> first{kSceneAttribute, "integrator"};  // others depend on both
   for (const auto& [name, ignored] : names) first.push_back(name);
   for (const std::string& name : first) {
     const auto fact = [&name](const auto& attributes) {

@@ -33,10 +33,10 @@ class EngineMismatch : public std::runtime_error {
   return text;
 }
 
-/// Passes all queries to both intersectors, returns the results and counters of the first, and
-/// throws EngineMismatch at the first ray for which they differ: in the triangle, in any bit of P
-/// or its error, or by disjoint intervals of t. With any_hit_before, the triangles may differ if
-/// both hits are nearer than that.
+/// Passes all queries to both intersectors and returns the results and counters of the first.
+/// Throws EngineMismatch at the first ray whose results differ: in the triangle, in any bit of the
+/// hit point or its error, or by disjoint intervals of t. The triangles may differ if both hits
+/// are nearer than RayQuery::any_hit_before.
 class CheckIntersector : public Intersector {
  public:
   CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> intersector,
@@ -54,7 +54,7 @@ class CheckIntersector : public Intersector {
     intersector_->nearest(rays, query, hits);
     RayQuery same = query;
     same.work = {};
-    same.source_ids = {};  // these do not affect results
+    same.source_ids = {};  // neither `work` nor `source_ids` affects results
     expected_.assign(rays.size(), {});
     reference_->nearest(rays, same, expected_);
     for (std::size_t i = 0; i < rays.size(); ++i) {

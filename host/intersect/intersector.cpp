@@ -45,7 +45,7 @@ bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a, const N
 bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHit hit, bool is_sure,
                      NearestHit& best, IntersectCounters& counters) {
   const bool is_first = best.primitive == NearestHit::kNone;
-  // Two equal triangles, as in sheets that coincide, need no comparison of distances.
+  // Hits of two triangles with equal corners need no comparison of distances.
   if (!is_first && is_sure &&
       bvh.float_corners_of(hit.primitive) == bvh.float_corners_of(best.primitive) &&
       bvh.corners_of(hit.primitive) == bvh.corners_of(best.primitive)) {
@@ -66,7 +66,7 @@ bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHi
   if (!is_first) {
     counters.exact_depth += overlap(hit.t, best.t);
     if (!is_nearer(bvh, ray, hit, best)) return false;
-    hit.t.high = std::min(hit.t.high, best.t.high);  // it is nearer than `best`
+    hit.t.high = std::min(hit.t.high, best.t.high);  // because `hit` is nearer than `best`
   }
   best = hit;
   return true;

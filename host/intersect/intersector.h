@@ -33,12 +33,12 @@ struct HitCounters {
   std::uint64_t hits = 0;          ///< sure hits
   std::uint64_t edge_doubts = 0;   ///< neither sure misses nor sure hits
   std::uint64_t depth_doubts = 0;  ///< sure hits that binary32 cannot order
-  std::uint64_t plane_tests = 0;   ///< points P = d I / (I . N) computed
+  std::uint64_t plane_tests = 0;   ///< hit points computed
   // The fields below are 0 without a unit.
   std::uint64_t unit_tests = 0;     ///< tests done by the unit
   std::uint64_t clocks = 0;         ///< simulated clock cycles
   std::uint64_t idle_clocks = 0;    ///< clocks without a test, summed over the pipeline's lanes
-  std::uint64_t output_stalls = 0;  ///< clocks stalled by the consumer, summed likewise
+  std::uint64_t output_stalls = 0;  ///< clocks stalled by the consumer, summed over the lanes
   std::uint64_t exact_clocks = 0;   ///< busy clocks of the exact units of ray cores
 
   HitCounters& operator+=(const HitCounters& other) {
@@ -72,9 +72,9 @@ struct NearestHit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   std::uint32_t primitive = kNone;  ///< primitive index; kNone: a miss
-  glm::vec3 point{0.0f};  ///< P = d I / (I . N), relative to the ray's origin, with the unit's bits
-  /// Relative error bound of each coordinate of P, in addition to 2^-46 of the largest coordinate
-  /// for underflow; +infinity if the unit has no usable P. Every intersector gives the same bits.
+  glm::vec3 point{0.0f};  ///< hit point minus the ray's origin; the same bits as in hardware
+  /// Relative error bound of each coordinate of `point`, in addition to 2^-46 of the largest
+  /// coordinate for underflow; +infinity if `point` is not usable. The same bits in every engine.
   float point_error = std::numeric_limits<float>::infinity();
   Interval t{};  ///< contains the exact t
 };
@@ -90,17 +90,15 @@ struct RayWork {
   }
 };
 
-/// Options of a search for many rays. Spans must outlive the search, and are empty or have one
-/// element per ray.
+/// Options of a search. Spans must outlive the search. A span is empty or has one element per ray.
 struct RayQuery {
-  /// Whether all rays start at one point (the camera, a light), which makes some engines faster.
-  /// Does not change results.
+  /// Whether all rays start at one point: faster in some engines, and does not change results.
   bool common_origin = false;
   /// Positive. Only hits with exact t < t_max[i] count; +infinity: no limit.
   std::span<const float> t_max{};
-  /// The rays in binary64, which `rays` round to binary32; empty: `rays` are exact. Only
-  /// CpuIntersector accepts them, and then makes no use of a common origin. NearestHit::point
-  /// belongs to the rounded ray.
+  /// The exact rays, if `rays` are rounded from binary64; empty if `rays` are exact. Only
+  /// CpuIntersector accepts exact rays, and ignores `common_origin` if there are any.
+  /// NearestHit::point is computed from the rounded ray.
   std::span<const ExactRay> exact_rays{};
   /// The primitive that the ray leaves and surely does not hit, or NearestHit::kNone. Does not
   /// change results, but saves the test that is hardest to decide.
@@ -124,7 +122,7 @@ struct EngineTraits {
   /// Best number of rays per query: about 16,384 for each test done in parallel.
   std::size_t batch = std::size_t{1} << 14;
   bool takes_exact_rays = false;  ///< RayQuery::exact_rays
-  bool wants_sources = false;     ///< faster with source_ids, though these need exact arithmetic
+  bool wants_sources = false;     ///< source_ids save more time than it takes to find them
 };
 
 /// Finds nearest hits with exact decisions: results depend only on ray and scene, not on the
@@ -157,7 +155,8 @@ class Intersector {
 /// Makes the intersector of a thread; called on that thread. The factory owns shared data.
 using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 
-/// Returns whether a hit has t < t_max (at least 2^-149; infinite in binary32: no limit); exact.
+/// Returns, exactly, whether a hit has t < t_max, for t_max >= 2^-149. Values above the largest
+/// float mean no limit.
 [[nodiscard]] bool is_before(const Bvh& bvh, const ExactRay& ray, const NearestHit& hit,
                              double t_max);
 
@@ -165,9 +164,9 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a,
                              const NearestHit& b);
 
-/// Replaces `best` by `hit` if `hit` is nearer and has t < t_max. Returns whether it replaced it.
-/// The order of calls does not matter. If not `is_sure`, `hit` may be a miss, which is decided
-/// exactly, and hit.t is not read. Counts the use of exact arithmetic.
+/// Replaces `best` by `hit` if `hit` is nearer and has t < t_max. Returns whether `best` changed.
+/// The order of calls does not matter. If not `is_sure`, exact arithmetic decides whether `hit` is
+/// a hit at all, and hit.t is not read. Counts the use of exact arithmetic in `counters`.
 bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHit hit, bool is_sure,
                      NearestHit& best, IntersectCounters& counters);
 

@@ -9,24 +9,24 @@ namespace raygate {
 
 // The bound of an edge test
 //
-// Let u = 2^-24, E the exact edge plane A x B (times the record's power of two, if any), D the
-// double before rounding, F the record's float words, I a direction with |I_i| < 2, so that |I . X|
-// < 2 |X|_1 for any X. |.|_1 is the sum of magnitudes.
+// To show: |float32(I . F) - I . E| < kEdgeBound u |F|_1. Here u = 2^-24 is the unit roundoff of
+// float, and |X|_1 the sum of the magnitudes of X's components. E is the exact edge plane A x B for
+// corners A, B minus the origin (times the record's power of two, if any). D is E computed in
+// double, and F is D rounded to float. I is a direction with |I_i| < 2, so |I . X| < 2 |X|_1.
 //
-// 1. Double. edge_normal guarantees |D_i - E_i| <= 2^-34 |D|_1, including cancellation in the cross
-//    product: it uses exact arithmetic if double is less accurate. Together: |D - E|_1 <= 3 * 2^-34
-//    |D|_1.
-// 2. Rounding to float. |F_i - D_i| <= u |F_i|, or 2^-150 if F_i is subnormal. Together: |F - D|_1
-//    <= u |F|_1 + 3 * 2^-150, and so |D|_1 < 1.001 |F|_1. 1 and 2:  |I . F - I . E| < (2 + 6.006 *
-//    2^-10) u |F|_1 + 6 * 2^-150.
-// 3. The dot product in float, in any order: a product takes part in at most three roundings (its
-//    own and two sums), so the error of the result is (3 u / (1 - 3 u)) |I|.|F| < 6.00001 u |F|_1;
-//    a product that underflows adds at most 2^-150 (sums do not underflow), three of them 2^-148.
+// 1. Double: |D_i - E_i| <= 2^-34 |D|_1 by edge_normal. For all components together,
+//    |D - E|_1 <= 3 * 2^-34 |D|_1.
+// 2. Rounding to float: |F_i - D_i| <= u |F_i|, or 2^-150 if F_i is subnormal. Together,
+//    |F - D|_1 <= u |F|_1 + 3 * 2^-150, and so |D|_1 < 1.001 |F|_1.
+//    From 1 and 2: |I . F - I . E| < (2 + 6.006 * 2^-10) u |F|_1 + 6 * 2^-150.
+// 3. The dot product in float, in any order: each product has at most three roundings (its own and
+//    two sums). Their error is at most (3 u / (1 - 3 u)) |I|.|F| < 6.00001 u |F|_1. Products that
+//    underflow add at most 2^-150 each, less than 2^-148 in all. Sums do not underflow.
 // 4. make_record keeps max |F_i| between 2^-60 and 2^61. So nothing overflows, and the underflow
 //    terms, less than 2^-146 in all, are under 2^-62 u |F|_1.
 //
-// Sum: less than (8 + 0.00587 + 0.00001 + 2^-62) u |F|_1 < kEdgeBound u |F|_1. The margin covers
-// evaluating the latter in double; the rounding to float is upwards.
+// Sum: less than (8 + 0.00587 + 0.00001 + 2^-62) u |F|_1. The margin up to kEdgeBound covers
+// evaluating the bound in double. Its rounding to float is upwards.
 
 namespace {
 
@@ -38,9 +38,9 @@ bool lower(const glm::dvec3& a, const glm::dvec3& b) {
   return std::pair(a.x, std::pair(a.y, a.z)) < std::pair(b.x, std::pair(b.y, b.z));
 }
 
-/// Returns A x B in float. Computed from the lower vertex, A x B = A x (B - A), regardless of the
-/// edge's direction, so neighbours get exactly opposite numbers. The difference, small for a
-/// distant triangle, avoids cancellation in A x B.
+/// Returns A x B in float for A = a - origin and B = b - origin, computed as A x (B - A), which
+/// cancels less for a distant triangle. Always starts from the lower vertex, so that the two
+/// triangles at an edge get exactly opposite numbers.
 glm::vec3 edge_words(const glm::dvec3& origin, const glm::dvec3& a, const glm::dvec3& b) {
   glm::dvec3 edge = lower(a, b) ? edge_normal(origin, a, b) : -edge_normal(origin, b, a);
   if (!ordinary(largest(edge))) edge = scaled_by(edge, to_unit(edge));
@@ -72,8 +72,8 @@ bool set_plane(const glm::dvec3& origin, const Corners& t, PolygonRecord& record
 }
 
 // The functions below do the operations of exact.cpp and of the functions above, in the same order.
-// So all bits are equal if double is accurate enough and all exponents are ordinary; other records
-// are left to make_record.
+// So all bits are equal if double is accurate enough and all exponents are ordinary. make_record
+// makes all other records.
 
 constexpr double kU = 0x1p-53;  // as in exact.cpp
 
@@ -93,7 +93,7 @@ RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& val
   require_ordinary(largest(s), good);
 }
 
-/// Stores four words of each of four records i, at words[i][first] and behind.
+/// Stores four words of each record i at words[i][first] to words[i][first + 3].
 template <std::size_t kWords>
 RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const FloatQuad& c,
                                 const FloatQuad& d, float (&words)[kQuad][kWords],
@@ -103,7 +103,7 @@ RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const Fl
   for (int i = 0; i < kQuad; ++i) std::memcpy(&words[i][first], &record[i], 16);
 }
 
-/// Returns the bound of an edge: a constant times the sum of its words' magnitudes, rounded up.
+/// Returns the same as edge_bound above, for four edges.
 RAYGATE_INLINE FloatQuad edge_bound(const Triple<FloatQuad>& words) {
   const Points e = absolute(wide(words));
   const DoubleQuad exact = kEdgeBound * 0x1p-24 * (e.x + e.y + e.z);
@@ -122,8 +122,8 @@ RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
   }
 }
 
-/// Computes N and d from the corners and the first corner relative to the origin. Clears `good` in
-/// lanes in which N or d is not accurate.
+/// Computes N and d from the corners `t` and from `a`, the first corner minus the origin. Clears
+/// `good` in lanes in which N or d is not accurate.
 RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal,
                                 DoubleQuad& d, LongQuad& good) {
   Points size;

@@ -1,5 +1,5 @@
-// Polygon record: one triangle seen from one origin, the 64 bytes that a hit test reads; and the
-// error bound of the point P that a unit computes from it.
+// Polygon record: the 64 bytes that a hit test reads, which describe a triangle seen from an
+// origin. Also the error bound of the hit point P that the hardware computes from a record.
 #pragma once
 
 #include <algorithm>
@@ -16,19 +16,19 @@
 namespace raygate {
 
 /// The 16 words of a triangle A, B, C seen from an origin O (A, B, C are the vertices minus O). All
-/// rays from O share it.
+/// rays from O share the record.
 ///
 /// Words are results of double or exact arithmetic, rounded once to float. (N, d), and each edge
-/// with its bound, are scaled by a power of two if their exponents are outside [-60, 60]; this
-/// changes neither P nor any sign. All words are finite, except that a bound can be +infinity: that
-/// edge is then always in doubt.
+/// with its bound, are scaled by a power of two if their exponents are outside [-60, 60]. Scaling
+/// changes neither hit points nor signs. All words are finite, except that a bound can be
+/// +infinity: its edge is then always in doubt.
 struct alignas(64) PolygonRecord {
   glm::vec3 normal{0.0f};            ///< words 0-2: N = (B-A) x (C-A), the paper's H
   float d = 0.0f;                    ///< word 3: N . A; its sign (-1, 0 or 1) is exact
   std::array<glm::vec3, 3> edges{};  ///< words 4-12: A x B, B x C, C x A; for a shared edge the
                                      ///< two triangles hold exactly opposite numbers
-  std::array<float, 3> bounds{};     ///< words 13-15: |float32(I . E) - exact| < bound, for every
-                                     ///< I with components of magnitude under 2
+  std::array<float, 3> bounds{};     ///< words 13-15: |float32(I . E) - exact| < bound for edge E,
+                                     ///< for every direction I with components of magnitude under 2
 };
 static_assert(sizeof(PolygonRecord) == 64);
 
@@ -46,7 +46,7 @@ template <class T>
   return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
 }
 
-/// The bound of an edge E is kEdgeBound 2^-24 |E|_1 (derivation in polygon_record.cpp).
+/// The bound of an edge (x, y, z) is kEdgeBound 2^-24 (|x| + |y| + |z|), see polygon_record.cpp.
 inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
 
 /// Returns the record of a triangle for rays from `origin`. All coordinates are finite with a
@@ -70,19 +70,21 @@ struct PlaneViews {
 /// Sets words[k][i] to word k of make_plane(views.origins[i], views.triangles[i]), bit for bit.
 void make_planes(const PlaneViews& views, float (&words)[4][kQuad]);
 
-// Derivation of the error bound of P
+// Derivation of the error bound of the hit point P = d I / V, for V = I . N and the direction I
 //
-// Let u = 2^-24 and g be how far V's exponent is below the largest of N's, or 0. By hit_test_pkg.sv
-// the relative error of V is at most r = 48.5 u 2^g. With 2 u for d and u for the division, that of
-// t is at most (48.5 * 2^g + 3.2) u / (1 - r). With one more rounding, of d I_k, that of P_k is at
-// most (48.5 * 2^g + 4.3) u / (1 - r) < 2^(6 + g) u = 2^(g - 18) while r <= 0.1, which holds up to
-// g = 12. A product d I_k that underflows has an error of 2^-150, less than 2^-48 d if d is at
-// least 2^-102, so less than 2^-48 t in P. A P_k that underflows has an error of 2^-150, less than
-// 2^-47 t if t is at least 2^-103. Nothing overflows if d, t < 2^104. The last two errors can
-// exceed a small coordinate, but their sum is less than 2^-46 of the largest coordinate.
+// Let u = 2^-24, the unit roundoff, and g = how far V's exponent is below the largest of N's, or 0.
+// 1. V has a relative error of at most r = 48.5 u 2^g (proof in hit_test_pkg.sv).
+// 2. t = d / V: d adds 2 u, and the division u. In all, at most (48.5 * 2^g + 3.2) u / (1 - r).
+// 3. P_k = (d I_k) / V has one more rounding: at most (48.5 * 2^g + 4.3) u / (1 - r), which is less
+//    than 2^(6 + g) u = 2^(g - 18) while r <= 0.1, that is, up to g = 12.
+// 4. If d I_k underflows, its error of 2^-150 is less than 2^-48 d for d >= 2^-102. So P_k changes
+//    by less than 2^-48 t.
+// 5. If P_k underflows, its error of 2^-150 is less than 2^-47 t for t >= 2^-103.
+// The errors of 4 and 5 add up to less than 2^-46 t, which is at most 2^-46 of P's largest
+// coordinate. Nothing overflows if d, t < 2^104.
 
-/// Returns BurstResult::t_error: how far V's exponent is below the largest of N's, or 0. `largest`
-/// is N's largest exponent field; `v`, a finite V. `Bits` is std::int32_t or a vector of it.
+/// Returns BurstResult::t_error: how far the exponent of V = I . N is below `largest`, the largest
+/// exponent field of N, or 0. `v`: the bits of a finite V. `Bits`: std::int32_t or a vector.
 template <class Bits>
 RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
   return maximum(Bits(largest - (v >> 23 & 0xFF)), Bits{});
@@ -94,8 +96,8 @@ RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
   return std::max({field(n.x), field(n.y), field(n.z)});
 }
 
-/// Returns the bits of NearestHit::point_error from the bits of d and V: 2^(grazing - 18), or
-/// +infinity if V is not finite or too small for the unit.
+/// Returns the bits of NearestHit::point_error: 2^(grazing - 18), or +infinity if d or V = I . N is
+/// out of the range derived above. `d` and `v` have the bits of d and V.
 template <class Bits>
 RAYGATE_INLINE Bits point_error_of(const Bits& d, const Bits& v, const Bits& grazing) {
   constexpr std::int32_t kBias = 127, kMaxGrazing = 12, kRange = 102;

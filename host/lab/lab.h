@@ -33,7 +33,7 @@ inline double seconds_of(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Returns a quantile of at least one value.
+/// Returns the quantile `part`, in [0, 1], of at least one value.
 inline double quantile(std::vector<double> values, double part) {
   std::ranges::sort(values);
   return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
@@ -43,7 +43,7 @@ inline double quantile(std::vector<double> values, double part) {
 /// was built. Not thread-safe.
 [[nodiscard]] std::unique_ptr<HitTester> make_rtl_variant_tester(const Variant& variant);
 
-/// Declares a command and its options. Parsing the command's name runs it; it prints its rows.
+/// Declares a command and its options. Parsing a command's name runs the command; it prints rows.
 using AddCommand = void(CLI::App& lab);
 
 AddCommand add_stress;      ///< correctness of engines and variants in hard cases

@@ -37,7 +37,7 @@ def scene_name(row: dict) -> str:
 
 
 def grouped(rows: list[dict], by: tuple[str, ...], over: str) -> list[dict]:
-    """Returns one row for each value of the columns `by`; its `at` maps values of `over` to the rows with them."""
+    """Returns one row for each combination of values of the columns `by`. Its `at` maps the values of column `over` to rows."""
     found: dict[tuple, dict] = {}
     for row in rows:
         found.setdefault(tuple(row[key] for key in by), {**row, "at": {}})["at"][row[over]] = row

@@ -39,8 +39,7 @@ def run_lab(*words: object) -> list[dict]:
 
 
 def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> list[dict]:
-    """Returns the rows of all steps. Reuses steps of an interrupted run of the same make command `asked` at the same
-    commit."""
+    """Returns the rows of all steps. Reuses steps of an interrupted run of the same make command `asked` at the same commit."""
     about = kept.describe()
     stamp = {"commit": about["commit"], "machine": f"{about['processor']}, {about['processors']} processors"}
     folder = KEPT / "unfinished" / target

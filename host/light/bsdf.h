@@ -9,8 +9,8 @@ namespace raygate {
 
 /// The BSDF of hits of one kind: four lobes, each with a colour as its albedo.
 ///
-/// `illum` selects the lobes; d is the opacity, 1 is opaque. Lobes of an opaque surface that add up
-/// to more than 1 are scaled down, to conserve energy.
+/// `illum`, the illumination model of an MTL file, selects the lobes. Kd, Ks, Ns, Tf and Ni are
+/// MTL's; d is the opacity (1: opaque). Except for glass, a sum of lobes above d is scaled to d.
 ///
 /// | illum | diffuse | glossy | mirror | transmission |
 /// |---|---|---|---|---|
@@ -25,16 +25,16 @@ namespace raygate {
 /// | 8, 9 | as 3, 4 | | | |
 /// | 10 | as 1, with the colour at which it looks like the background (catcher_colour) | | | |
 ///
-/// With 4, 6, 7 and 9, d = 1 counts as 0: exporters leave this default, and the model implies a
-/// clear material. Radiance is divided by the squared index of refraction throughout, so that it
-/// does not change at an interface. "The rest" is the fraction that the mirror does not reflect. A
-/// mirror cannot show a point light, which has no size; it shows a highlight with exponent Ns
-/// instead, unless Ns is at most 1 (0 is the default).
+/// With 4, 6, 7 and 9, d = 1 counts as 0: these models imply a clear material, but exporters leave
+/// d at its default of 1. All radiance is divided by the squared index of refraction of its medium;
+/// the quotient does not change at an interface. "The rest" is the fraction of light that the
+/// mirror does not reflect. A mirror cannot show a point light, which has no size. It shows a
+/// highlight with exponent Ns instead, unless Ns is at most 1 (0 is the default).
 ///
 /// A metallic-roughness material has the lobes of MetallicRoughnessLobes instead: `diffuse` is the
-/// base below the facets, `glossy` the reflection of rough facets, `mirror` of smooth ones; glass
-/// has `mirror` and `transmission`. For rough glass these two are the albedos that smooth glass
-/// would have, and eval(), sample() and pdf() scatter to both sides.
+/// base below the facets, `glossy` the reflection of rough facets, and `mirror` the reflection of
+/// smooth facets. Glass has `mirror` and `transmission`. For rough glass, these two are the albedos
+/// of smooth glass, and eval(), sample() and pdf() scatter to both sides.
 ///
 /// T is float or FloatLanes: hits of one kind, each with its own material.
 template <class T>
@@ -60,14 +60,14 @@ class Bsdf {
   Triple<T> emission;  ///< emitted radiance (Ke)
   Triple<T> unlit;     ///< radiance that is visible but lights nothing (illum 0)
   MaskOf<T> is_refracting;
-  T eta;  ///< index of refraction behind the interface over that in front of it
+  T eta;  ///< index of refraction behind the interface over the index in front
   MetallicRoughnessLobes<T> facets;  ///< only for kMetallicRoughness
 
   /// Returns whether there is a lobe that is not specular: diffuse, glossy, or rough glass.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> scatters() const {
     return largest(diffuse) + glossy_sum() > 0.0f;
   }
-  /// Returns whether lights are sampled: scatters(), or a mirror with a highlight of point lights.
+  /// Returns whether lights are sampled: if scatters(), or if a mirror shows highlights.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> samples_lights() const {
     const MaskOf<T> scatters = this->scatters();
     if (!has_highlight()) return scatters;
@@ -80,7 +80,7 @@ class Bsdf {
   }
 
   /// Returns the BSDF without specular lobes, per steradian and without the cosine, for the unit
-  /// vector `light`. Behind the surface it is 0 except for rough glass.
+  /// vector `light`. The result is 0 behind the surface, except for rough glass.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     if ((kind_ & kMetallicRoughness) != 0) {
       const Triple<T> reflected = above(light, facets.eval(light));
@@ -99,8 +99,8 @@ class Bsdf {
   }
 
   /// Samples a direction, approximately in proportion to eval() times the cosine, for a point of
-  /// the unit square. The direction may point behind the surface or be 0; then its contribution is
-  /// 0, except behind rough glass. `choice` in [0, 1): see MetallicRoughnessLobes::sample.
+  /// the unit square. A direction that is 0 or points behind the surface contributes nothing,
+  /// except behind rough glass. `choice` in [0, 1): see MetallicRoughnessLobes::sample.
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u,
                                                 const T& choice = T{}) const {
     if ((kind_ & kGlossy) == 0) {
@@ -108,12 +108,12 @@ class Bsdf {
     }
     const T share = glossy_share(), left = 1.0f - share;
     const auto is_glossy = u.x < share;
-    // The rest of u.x selects the angle from the axis.
+    // The position of u.x in its lobe's interval selects the angle from the axis.
     const T glossy_rest = 1.0f - u.x / choose(share > 0.0f, share, spread<T>(1.0f));
     const T diffuse_rest = (u.x - share) / choose(left > 0.0f, left, spread<T>(1.0f));
     const T rest = at_most(at_least(choose(is_glossy, glossy_rest, diffuse_rest), 0.0f), 1.0f);
     if ((kind_ & kMetallicRoughness) != 0) {
-      // Both lobes use the same point: each lane needs only one of them.
+      // Both lobes can use the same point, because each lane needs only one lobe.
       return choose(is_glossy, facets.sample({rest, u.y}, choice),
                     spherical_direction(normal_, root(1.0f - rest), root(rest), u.y));
     }

@@ -15,14 +15,13 @@ namespace raygate {
   return (colour.x + colour.y + colour.z) / 3.0;
 }
 
-/// An EnvironmentMap prepared for rendering. Directions are unit vectors away from the scene; T is
-/// float or FloatLanes.
+/// An EnvironmentMap prepared for rendering. Directions are unit vectors away from the scene.
 ///
 /// Sampling is by cell. A cell lies between the centres of four texels (two at the poles), where
 /// the map is bilinear. A cell's probability is the mean brightness of its corners times its solid
-/// angle; within it directions are uniform. So the pdf is positive wherever the map is, and at
-/// least a quarter of the ideal pdf. ("Physically Based Rendering", Pharr, Jakob and Humphreys,
-/// uses whole texels.)
+/// angle; within a cell, directions are uniform. So the pdf is positive wherever the map is
+/// positive, and at least a quarter of the ideal pdf. ("Physically Based Rendering", Pharr, Jakob
+/// and Humphreys, uses whole texels.) T is float or FloatLanes.
 class Environment {
  public:
   explicit Environment(const EnvironmentMap& map);
@@ -85,7 +84,7 @@ class Environment {
            spread<T>(ahead_) * (sine * narrow(turn.cosine));
   }
 
-  /// Returns the mean over all directions.
+  /// Returns the mean radiance over all directions.
   [[nodiscard]] const glm::dvec3& mean_radiance() const { return mean_; }
 
  private:
@@ -136,9 +135,9 @@ class Environment {
   std::uint32_t width_, height_;  // size of the map; there is one more row of cells than of texels
   glm::vec3 up_, ahead_, right_;
   glm::dvec3 mean_{0.0};
-  std::vector<float> row_cdf_;     // cumulative probability of the rows
-  std::vector<float> column_cdf_;  // cumulative probability of the cells within each row
-  std::vector<float> cosines_;     // cosines between the rows' edges and up_; one more than rows
+  std::vector<float> row_cdf_;          // cumulative probability of the rows
+  std::vector<float> column_cdf_;       // cumulative probability of the cells within each row
+  std::vector<float> cosines_;          // cosines of the angles between up_ and the rows' edges
   std::vector<float> per_solid_angle_;  // by row: 1 / the solid angle of a cell
 };
 

@@ -24,14 +24,14 @@ namespace raygate {
 
 class LightPaths;
 
-/// A ray spawned at a hit: reflected, refracted or scattered.
+/// A ray spawned at a hit: reflected, refracted or scattered. Directions are scaled (is_scaled).
 struct alignas(16) ScatteredRay {
   PathState state;
   glm::vec3 direction{0.0f};  ///< scaled
   /// Direction made with the geometric normal, used if `direction` leads to the wrong side.
   glm::vec3 flat{0.0f};
   std::uint32_t is_wanted : 1 = 0;
-  /// It is certain that the ray leaves to the right side; if unset, exact arithmetic decides.
+  /// The ray certainly leaves to the right side; if unset, exact arithmetic decides.
   std::uint32_t surely_leaves : 1 = 0;
   std::uint32_t has_flat : 1 = 0, is_transmitted : 1 = 0;
 
@@ -103,7 +103,7 @@ struct PathLanes {
 /// A part of a batch with its hits and results. Lists are indexed by a ray's position in the part.
 struct HitBlock {
   const RayBatch* batch = nullptr;
-  std::size_t begin = 0;                             ///< in the batch
+  std::size_t begin = 0;                             ///< index in the batch of the part's first ray
   std::vector<SurfaceHit> places;                    ///< of the hits
   std::vector<const MaterialParameters*> materials;  ///< of the hits
   std::vector<glm::vec3> radiance;                   ///< along the ray, times the path's throughput
@@ -161,7 +161,7 @@ template <class T>
 struct Hits {
   static constexpr int kCount = kLanesOf<T>;
 
-  /// `at`: positions in the block; if there are fewer than lanes, the last one is repeated.
+  /// `at`: positions in the block; if there are fewer than lanes, the last position is repeated.
   RAYGATE_INLINE Hits(const ShadingScene& shading, HitBlock& hits, HitKind hit_kind,
                       std::span<const std::uint32_t> at)
       : block(hits), kind(hit_kind), count(static_cast<int>(at.size())) {
@@ -182,8 +182,8 @@ struct Hits {
     if (!hits.first_surfaces.empty()) show_first_surfaces();
   }
 
-  /// Returns the cosine of a unit direction with the shading normal. 0 where no light from there is
-  /// scattered: behind the triangle or, for rough glass, on different sides by both normals.
+  /// Returns the cosine of a unit direction to the shading normal; 0 if light from there is not
+  /// scattered: behind the triangle; for rough glass, on different sides by normal and flat_normal.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
@@ -206,7 +206,7 @@ struct Hits {
     return choose(are_supersampled(), zero<T>(), bsdf.emission);
   }
 
-  /// Returns a point of the path's random stream for this purpose.
+  /// Returns a random point of the path; each purpose has its own stream of random numbers.
   [[nodiscard]] RAYGATE_INLINE SquarePoint<T> random(std::uint32_t purpose) const {
     return random_point<T>(path.index, path.stream, purpose);
   }
@@ -256,7 +256,7 @@ struct ScatteredRays {
 
   RAYGATE_INLINE explicit ScatteredRays(const Hits<T>& hits) : path(hits.path) {}
 
-  /// Reflects the view about `normal` into `direction`, about the geometric normal into `flat`.
+  /// Sets `direction` to the view reflected about `normal`; `flat`, about the geometric normal.
   RAYGATE_INLINE void reflect_off(const Hits<T>& hits, const Triple<T>& normal) {
     direction = reflect(hits.surface.view, normal);
     flat = reflect(hits.surface.view, hits.surface.flat_normal);
@@ -265,7 +265,7 @@ struct ScatteredRays {
     path.specular_history = hits.path.after_mirror();
   }
   /// Sets the directions to those through the surface: refracted at `normal` if the material
-  /// refracts, otherwise straight on. Returns where such a direction exists.
+  /// refracts, otherwise straight on. Returns in which lanes such a direction exists.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> pass_through(const Hits<T>& hits,
                                                       const Triple<T>& normal) {
     const Surface<T>& surface = hits.surface;
@@ -298,7 +298,7 @@ struct ScatteredRays {
 };
 
 /// Calls shade(hits) for the hits at positions `at` of the block, as many at a time as there are
-/// lanes. The baseline has one lane; any number of lanes gives the same bits.
+/// lanes. Baseline code has one lane; any number of lanes gives the same bits.
 template <class Shade>
 void shade_in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
                     std::span<const std::uint32_t> at, const Shade& shade) {
@@ -316,10 +316,10 @@ void shade_in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
 using ShadeFunction = void(const ShadingScene& shading, HitBlock& block, HitKind kind,
                            std::span<const std::uint32_t> at);
 
-/// Whitted's ray tracing ("An improved illumination model for shaded display", 1980). At each hit:
-/// emission; direct light of every light, with a shadow ray to each point light and to one point of
-/// each area light; an ambient term for interreflection; and rays through mirrors and glass, up to
-/// the maximum depth or until their throughput is below the threshold. With one sample per pixel a
+/// Whitted's ray tracing ("An improved illumination model for shaded display", 1980). Adds, at each
+/// hit, emission, an ambient term for interreflection, and direct light, with a shadow ray to each
+/// point light and to one point of each area light. Spawns rays through mirrors and glass, up to
+/// the maximum depth or until their throughput is below the threshold. With one sample per pixel, a
 /// light that is one triangle or parallelogram is sampled at its centre.
 ShadeFunction shade_whitted;
 
@@ -330,13 +330,13 @@ ShadeFunction shade_whitted;
 ShadeFunction shade_path;
 
 /// Light tracing (Dutre, Lafortune and Willems, "Monte Carlo light tracing with direct computation
-/// of pixel intensities", 1993): each hit after a first mirror or glass is connected to the camera
-/// by a light sample whose target is on the lens, and one ray is spawned.
+/// of pixel intensities", 1993): each hit except a path's first, on a mirror or glass, is connected
+/// to the camera by a light sample whose target is on the lens. Each hit spawns one ray.
 ShadeFunction shade_light_path;
 
 /// Shades hits on specular paths from the camera whose histories are in PathState::supersampled:
-/// adds emission, and spawns reflected and refracted rays. A ray's sample is a multiple of
-/// kSpecularHistories plus its history, so that radiance is separated by history.
+/// adds emission, and spawns reflected and refracted rays. PathState::sample is a multiple of
+/// kSpecularHistories plus the history, which separates radiance by history.
 ShadeFunction shade_emitters;
 
 /// Returns a finite number: infinity becomes the largest float, NaN becomes 0.
@@ -357,11 +357,11 @@ struct IncidentLight {
   MaskOf<T> is_area = is_asked;          ///< from an area light
   MaskOf<T> is_point_light = is_asked;   ///< from a point light
   Triple<T> direction = zero<T>();       ///< unit vector towards the light
-  T distance_squared = spread<T>(1.0f);  ///< in units of Lights; 1: a distant light
+  T distance_squared = spread<T>(1.0f);  ///< in square units; 1: a distant light
   T cosine = T{};                        ///< Hits::cosine of the direction; 0: no light arrives
-  T light_cosine = T{};                  ///< of an area light
+  T light_cosine = T{};                  ///< of the direction to an area light's normal
   Triple<T> emission = zero<T>();        ///< radiance, intensity or irradiance
-  /// Probability of the light times the density of its point (per area) or direction.
+  /// Probability of choosing the light times the pdf of its point (per area) or direction.
   T pdf = spread<T>(1.0f);
   Triple<T> target = zero<T>();  ///< target and index as in LightSample
   WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
@@ -370,7 +370,7 @@ struct IncidentLight {
   /// Computes the fields of light from a point that depend only on the point's position.
   RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
       : target(position) {
-    constexpr float kNear = 1e-30f;  // the inverse is within the range of float
+    constexpr float kNear = 1e-30f;  // least distance_squared with light
     const Triple<T> way = (position - hits.surface.point) * spread<T>(lights.per_unit());
     distance_squared = dot(way, way);
     direction = way * (1.0f / root(distance_squared));
@@ -380,7 +380,7 @@ struct IncidentLight {
   RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
       : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
 
-  /// Copies the lanes of `other` in which `is_asked` is set.
+  /// Copies the lanes of `other` in which other.is_asked is set.
   RAYGATE_INLINE void take(const IncidentLight& other) {
     const auto put = [&](auto& own, const auto& others)
                          RAYGATE_BODY { own = choose(other.is_asked, others, own); };
@@ -398,8 +398,8 @@ struct IncidentLight {
   }
 };
 
-/// Returns the light from the point lights `own` with these indices, one per lane: from a random
-/// point of a sphere, or from its middle if `in_middle`.
+/// Returns the light from the point lights `own` with these indices, one per lane. A light with a
+/// radius is sampled at a random point of its sphere, or at the centre if `in_middle`.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
                                             const Lights::Light* const (&own)[kLanesOf<T>],
@@ -438,7 +438,7 @@ RAYGATE_INLINE IncidentLight<T> area_light(const Lights& lights, const Hits<T>& 
   return light;
 }
 
-/// Returns throughput times the radiance scattered back along the ray; `scattered`: the BSDF.
+/// Returns throughput times the radiance scattered back along the ray; `scattered`: BSDF value.
 template <class T>
 RAYGATE_INLINE Triple<T> scattered_light(const Hits<T>& hits, const IncidentLight<T>& light,
                                          const Triple<T>& scattered, const T& mis_weight) {

@@ -15,8 +15,7 @@ constexpr std::size_t kMostHits = 2048;             // per block; its lists fit 
 constexpr std::size_t kFacesAhead = 12;             // prefetch distance
 constexpr std::size_t kMostLightSamples = 1 << 16;  // per block: 3 MB
 
-/// Lights each surface from the camera: diffuse colour times the cosine of the view, plus emission.
-/// Rays continue through holes.
+/// Shows diffuse colour times the cosine of the view, plus emission. Rays continue through holes.
 void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
                    std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, []<class T>(Hits<T>& hits) RAYGATE_BODY {
@@ -32,8 +31,8 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
   });
 }
 
-/// Returns ShadingScene::max_depth. kEmitters and kPath shade hits one deeper than that. Beside
-/// other integrators, which do not, kEmitters has a limit that is one lower.
+/// Returns ShadingScene::max_depth. kEmitters and kPath shade hits one level deeper than this.
+/// Other integrators do not, so kEmitters has a limit one lower when it accompanies them.
 int last_depth(IntegratorKind kind, const IntegratorSettings& settings) {
   if (kind == IntegratorKind::kPrimary) return 0;
   const int depth = settings.integrator == IntegratorKind::kPrimary ? 0 : settings.depth();
@@ -110,7 +109,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
   const glm::vec3 behind = background();
   const bool is_dark = behind == glm::vec3(0.0f);
   const bool sees_surroundings = sees_environment();
-  // The first surface behind holes is met by later rays.
+  // Rays of greater depth meet the first surface behind holes.
   const bool may_be_first = kind_ != IntegratorKind::kLight && !output.first_surface.empty() &&
                             (block_.batch->depth == 0 || has_masks_);
   block_.first_surfaces.assign(may_be_first ? count : 0, nullptr);
@@ -148,7 +147,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     ++first_[kinds_[i]];
   }
   add_infinite_light(output);
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());  // ends of the kinds
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());  // ends of the kinds' ranges
   order_.resize(first_.back());
   for (std::size_t i = count; i-- > 0;) {
     if (kinds_[i] != kHitKinds) order_[--first_[kinds_[i]]] = static_cast<std::uint32_t>(i);
@@ -252,7 +251,7 @@ bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const 
   return scattered.has_flat != 0 && leaves(scattered.flat);
 }
 
-/// Outputs the results of the hit at position i. Rays to a side without an origin are dropped.
+/// Outputs the results of the hit at position i. Rays to a side without a spawn origin are dropped.
 void Integrator::output_hit(std::size_t i, ShadingOutput& output) {
   const std::uint32_t sample = block_.state(i).sample;
   const SurfaceHit& place = block_.places[i];

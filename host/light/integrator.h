@@ -13,12 +13,12 @@
 
 namespace raygate {
 
-/// Shades the hits of batches; hits of one kind together. Not thread-safe. The order of results
-/// depends only on the order of the batch, so the radiance of a sample depends only on its rays.
+/// Shades the hits of batches. Hits of one HitKind are shaded together. Not thread-safe. The order
+/// of results depends only on the order of the batch, and a sample's radiance only on its rays.
 class Integrator {
  public:
   /// The references must outlive this object. `kind` may differ from `settings.integrator` (kLight,
-  /// kEmitters). `light_paths`, which kPath and kLight combine with camera paths, may be null.
+  /// kEmitters). `light_paths`: null if only camera paths find light; not null for kLight.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
              const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;
@@ -35,7 +35,7 @@ class Integrator {
   [[nodiscard]] glm::vec3 background() const {
     return sees_background() ? shading_.lights.background() : glm::vec3(0.0f);
   }
-  /// Returns whether such rays see an environment instead.
+  /// Returns whether rays that miss all geometry see an environment instead of background().
   [[nodiscard]] bool sees_environment() const {
     return sees_background() && shading_.lights.environment() != nullptr;
   }

@@ -7,7 +7,7 @@ namespace raygate {
 
 enum class IntegratorKind {
   kPrimary,  ///< camera rays only, lit from the camera: diffuse colour times cosine, plus emission
-  kWhitted,  ///< reflection, refraction and shadows, as in the paper
+  kWhitted,  ///< reflection, refraction and shadows, as in Whitted's paper
   kPath,     ///< full global illumination: Monte Carlo path tracing
   // Internal, not selectable by users:
   kLight,     ///< paths from the lights to the camera
@@ -22,14 +22,14 @@ struct IntegratorSettings {
   std::optional<int> max_depth{};
   double threshold = 1.0 / 256.0;   ///< Whitted: rays with a throughput below this are not traced
   std::optional<double> ambient{};  ///< Whitted: ambient radiance; default: Lights::ambient()
-  /// For kPath: whether light paths find caustics. They need several samples, error 0, no camera
-  /// lights, and a perspective camera.
+  /// For kPath: whether light paths find caustics. Light paths need several samples per pixel,
+  /// RenderSettings::error 0, no camera lights, and a perspective camera.
   bool caustics = true;
-  /// The host computes the hit point P if the relative error of the unit's P may exceed this. 0:
-  /// always; the largest float: only if the unit has no P.
+  /// Largest error, relative to P, of a hit point P computed by the unit. If P's error bound
+  /// exceeds this, the host computes P. 0: always; the largest float: only if the unit has no P.
   float point_error = 0x1p-16f;
 
-  /// Returns max_depth. Defaults: 4 for Whitted, as in the paper; 64 for paths (Russian roulette).
+  /// Returns max_depth. Defaults: 4 for kWhitted, as in the paper; 64 for kPath.
   [[nodiscard]] int depth() const {
     return max_depth.value_or(integrator == IntegratorKind::kPath ? 64 : 4);
   }

@@ -14,15 +14,15 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Few light paths suffice, as they are aimed at mirrors and glass. This number balances caustics
-// that camera paths also find against those that they do not.
+// Pixels per light path. Few paths suffice, because they are aimed at mirrors and glass. The number
+// is a compromise between caustics that camera paths find, too, and other caustics.
 constexpr std::uint64_t kPixelsOfPath = 8;
 
 std::uint64_t pixels_of(const FrameView& frame) {
   return static_cast<std::uint64_t>(frame.width) * static_cast<std::uint64_t>(frame.height);
 }
 
-// Streams of random numbers; paths use other streams later.
+// Streams of random numbers for starts; surfaces use other streams.
 constexpr std::uint32_t kLightPaths = 0x6C696768;
 constexpr std::uint32_t kSource = 10, kPlace = 11, kBall = 12, kTowards = 13;
 
@@ -220,7 +220,7 @@ std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::ui
     state.light_over_camera_pdf = finite_float(cosine / density);
     double nearest = reach_;
     for (const Ball& ball : balls_) nearest = std::min(nearest, glm::distance(ball.middle, origin));
-    origin += direction * (0x1p-16 * nearest);  // beyond the light itself
+    origin += direction * (0x1p-16 * nearest);  // off the light's surface
   } else {
     glm::dvec3 towards(light->position);
     if (light->kind == Lights::Kind::kEnvironment) {

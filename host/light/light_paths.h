@@ -22,7 +22,7 @@ RAYGATE_INLINE float caustic_weight(const PathState& state, const Density& densi
   return 1.0f / (1.0f + ratio * ratio);
 }
 
-/// Lower bound that densities apply to the cosines of edges.
+/// Lower limit to which densities clamp the cosines at the ends of path edges.
 inline constexpr float kLeastCosine = 0x1p-20f;
 
 /// The part of the frame that light paths target, in camera coordinates from 0 to 1.
@@ -32,22 +32,22 @@ struct FrameView {
   glm::dvec2 low{0.0}, high{1.0};  ///< contributions outside of this range are discarded
 };
 
-/// Samples where light paths start, returns the densities of these starts, and connects path ends
-/// to the camera.
+/// Samples and returns densities of starts of light paths, and connects path ends to the camera.
 ///
-/// Mirrors and glass here are smooth ones; at rough surfaces lights are sampled. A light path
-/// counts only if its first surface is a mirror or glass. So lights are chosen by the flux that
-/// they send to the bounding spheres of the scene's mirrors and glass. Rays from lights at finite
-/// distance are uniform in the solid angles of the spheres, those from distant lights over the
-/// spheres' discs. Lengths are in scene units, densities per square unit of Lights.
+/// Here, mirrors and glass are smooth; rough surfaces sample lights instead. A light path counts
+/// only if its first surface is a mirror or glass. Lights are therefore chosen by the flux that
+/// they send to the bounding spheres of the scene's mirrors and glass. Rays from a light at finite
+/// distance are uniform in the solid angles of the spheres. Rays from a distant light are uniform
+/// over the spheres' discs. Lengths are in scene units, densities per square unit of Lights.
 ///
 /// A path that both camera paths and light paths can find is weighted by multiple importance
 /// sampling with the power heuristic (Veach, "Robust Monte Carlo methods for light transport
-/// simulation", 1997, chapters 9 and 10). PathState::light_over_camera_pdf is the density of light
-/// paths over that of camera paths for the path so far, on light paths the inverse (as in
-/// "Implementing vertex connection and merging", Georgiev 2012). A vertex with edge cosines `in`
-/// and `out` and forward and reverse densities `pdf` and `back` per solid angle multiplies it by
-/// back / pdf * out / in; mirrors and smooth glass, by out / in.
+/// simulation", 1997, chapters 9 and 10). On a camera path, PathState::light_over_camera_pdf is the
+/// density of light paths over the density of camera paths for the path so far; on a light path, it
+/// is the inverse (as in "Implementing vertex connection and merging", Georgiev 2012). Each vertex
+/// multiplies it by back / pdf * out / in, mirrors and smooth glass by out / in. `in` and `out` are
+/// the cosines of the incoming and the outgoing edge. `pdf` is the density per solid angle of
+/// sampling the outgoing edge; `back`, of sampling the incoming edge on the reverse path.
 class LightPaths {
  public:
   /// The references must outlive this object.
@@ -65,12 +65,12 @@ class LightPaths {
   /// Returns the start of path `number` of an image, or nullopt if it carries no light.
   [[nodiscard]] std::optional<Start> start(std::uint64_t number, std::uint64_t seed) const;
 
-  /// Returns the density of a sample's light paths that start at `point` of a light in the unit
-  /// direction, per area and solid angle.
+  /// Returns the density of light paths that start at `point` of a source in this unit direction,
+  /// per area and solid angle. Counts the light paths of one sample per pixel.
   [[nodiscard]] float density(std::uint32_t source, const glm::vec3& point,
                               const glm::vec3& direction) const;
-  /// Returns the density of a sample's light paths from the environment that go through `point`
-  /// against the unit vector `towards`, per area perpendicular to `towards`.
+  /// Returns the density of light paths from the environment that go through `point` against the
+  /// unit vector `towards`, per area perpendicular to `towards`. Counts paths as density() does.
   [[nodiscard]] float environment_density(const glm::vec3& point, const glm::vec3& towards) const;
 
   /// Returns PathState::light_over_camera_pdf of camera rays with these unit directions, without
@@ -116,9 +116,9 @@ class LightPaths {
   const Lights& lights_;
   std::uint64_t count_;
   FrameView frame_;
-  float area_per_pixel_;  // of the image plane at distance 1
+  float area_per_pixel_;  // area of a pixel on the image plane at distance 1
   std::vector<Ball> balls_;
-  double discs_ = 0.0;              // total area of the discs, in square units
+  double discs_ = 0.0;              // total area of the spheres' discs, in square units
   double reach_ = 0.0;              // larger than any distance within the scene
   std::vector<double> source_cdf_;  // by source of Lights
 };

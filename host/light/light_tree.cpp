@@ -176,7 +176,7 @@ class LightTree::Builder {
     }
     const double length = glm::length(sum.axes);
     if (length > 0.0) all.axis = sum.axes / length;
-    // The widest angle from the axis with full emission; -1 for all directions.
+    // Cosine of the widest angle from the axis with full emission; -1: all directions.
     all.spread = length > 0.0 ? 1.0 : -1.0;
     for (const std::uint32_t number : group) {
       const LightBounds& one = sources_[number];
@@ -185,7 +185,7 @@ class LightTree::Builder {
       cosine = std::clamp(cosine, -1.0, 1.0);
       const double sine = std::sqrt(1.0 - cosine * cosine);
       const double own = std::sqrt(std::max(0.0, 1.0 - one.spread * one.spread));
-      // The sum of both angles, unless it exceeds 180 degrees.
+      // Cosine of the sum of the angles to one.axis and of one.spread; -1 beyond 180 degrees.
       const bool is_all = one.spread < -cosine;
       all.spread = std::min(all.spread, is_all ? -1.0 : cosine * one.spread - sine * own);
     }

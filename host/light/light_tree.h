@@ -15,14 +15,14 @@ namespace raygate {
 struct LightBounds {
   glm::dvec3 middle{0.0};  ///< of the bounding sphere
   double radius = 0.0;
-  /// Emission is full within the angle `spread` around the axis, and falls off with the cosine up
-  /// to the angle `reach` beyond that. Both are given as cosines.
+  /// Emission is full within the angle `spread` of the axis. Farther from the axis, emission falls
+  /// off with the cosine of the excess angle, up to an excess of `reach`. Both members are cosines.
   glm::dvec3 axis{0.0, 0.0, 1.0};
   double spread = -1.0, reach = 1.0;
   double back = 0.0;  ///< fraction emitted against the axis
   /// A distant light: `middle` is the direction towards it, or 0 for all directions.
   bool is_far = false;
-  /// Irradiance on a facing surface at distance 1, or anywhere for a distant light. A source
+  /// Irradiance on a facing surface at distance 1; for a distant light, at any distance. A source
   /// without power is never chosen.
   double power = 0.0;
 };
@@ -31,7 +31,7 @@ struct LightBounds {
 /// unoccluded contribution: by power, distance and the orientation of source and surface (Conty
 /// Estevez and Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018, but
 /// with up to eight children per node instead of splitting). Every source that contributes has a
-/// positive probability. float and FloatLanes give the same bits.
+/// positive probability. All types T give the same bits.
 class LightTree {
  public:
   LightTree() = default;
@@ -110,7 +110,7 @@ class LightTree {
   template <class T>
   RAYGATE_INLINE static float importance(const Node& node, const glm::vec3& point,
                                          const glm::vec3& normal, float (&weights)[kLanes]) {
-    // Error bound of the cosines, so that no partly visible light is dropped.
+    // Error bound of the cosines. It is added to them, so no partly visible light is dropped.
     constexpr float kMargin = 0x1p-10f;
     constexpr float kLeastSquare = 0x1p-40f;
     const T one = spread<T>(1.0f);
@@ -122,7 +122,7 @@ class LightTree {
       const T squared = dot(way, way), radius = load<T>(node.squared_radius + k);
       const auto is_inside = !(squared > radius);
       const T per_distance = 1.0f / root(choose(squared > 0.0f, squared, one));
-      // The half angle of the bounding sphere.
+      // Sine and cosine of the half angle that the bounding sphere subtends.
       const T ball_sine_squared = choose(is_inside, one, radius * (per_distance * per_distance));
       const T ball_sine = root(ball_sine_squared);
       const T ball_cosine = root(at_least(1.0f - ball_sine_squared, 0.0f));

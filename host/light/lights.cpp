@@ -86,8 +86,8 @@ LightBounds light_bounds(const PointLight& light, double unit) {
 /// suffices, as it is meant as a light. Otherwise radiance and area must be large, unlike those of
 /// glowing labels and screens. `size` is the scene's diagonal.
 bool is_lit_by_emitters(const Scene& scene, double size, bool is_preview) {
-  // Thresholds of radiance * area / size^2: about 1/100 of the main light, or 1/6 for emission with
-  // a texture, which is meant to be looked at.
+  // Thresholds of radiance * area / size^2, relative to the main light: 1/100, or about 1/6 for
+  // emission with a texture, which is meant to be looked at.
   constexpr double kGlow = 0.01, kPicture = 0.15;
   const auto is_picture = [](const Material& material) {
     return material.emission_map.texture != kNoIndex;
@@ -145,7 +145,7 @@ std::optional<CameraLights> default_lights(const Scene& scene, const Camera& cam
   // White surfaces stay below 1, with sky and interreflection added.
   add_far(-0.8, 1.2, is_preview ? 0.4 : 0.6);
   if (is_preview) add_far(1.4, 0.3, 0.16);
-  lights.radius = 0.5 * size;  // penumbras are 1/8 as wide as the occluder's distance
+  lights.radius = 0.5 * size;  // penumbra width: 1/8 of the occluder's distance
   return lights;
 }
 
@@ -218,7 +218,7 @@ void Lights::find_areas() {
     const Triangle& face = scene_.triangles[bvh_.triangle_of(primitive)];
     if (emits(scene_.materials[face.material])) emitting.push_back(primitive);
   }
-  // Sort into the scene's order, so that lights do not depend on how the BVH is built.
+  // In the scene's order, lights do not depend on how the BVH is built.
   std::ranges::sort(emitting, {}, [&](std::uint32_t each) { return bvh_.triangle_of(each); });
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
   for (const std::uint32_t primitive : emitting) {
@@ -343,7 +343,7 @@ void Lights::add_sources(double unit) {
 
 std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t> primitives) {
   struct Edge {
-    std::array<double, 6> ends;  // the smaller one first
+    std::array<double, 6> ends;  // of the edge; the smaller end is first
     std::uint32_t triangle;
     bool is_reversed;
   };

@@ -25,11 +25,11 @@ struct CameraLights {
   double radius = 0.0;
 };
 
-/// Returns lights for a scene without any (no lights, no background, and no emission except
-/// textures that hardly light anything): a light to the upper left of the camera with soft shadows,
-/// or at the camera if the camera is inside the scene, and a dim sky. Returns nullopt for other
-/// scenes. With `is_preview`, for a camera that the user did not choose, there is a second, weaker
-/// light from the right, and scenes with only a background or dim emitters get lights, too.
+/// Returns lights for a scene that has none: no lights, no background, and no emission except by
+/// textures that hardly light anything. These are a dim sky and a light with soft shadows to the
+/// upper left of the camera, or at the camera if the camera is inside the scene. Returns nullopt
+/// for other scenes. With `is_preview`, for cameras not chosen by the user, there is a second,
+/// weaker light from the right, and scenes with only a background or dim emitters get lights, too.
 [[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
                                                          bool is_preview = false);
 
@@ -41,9 +41,9 @@ struct CameraLights {
   return {finite_float(x.x), finite_float(x.y), finite_float(x.z)};
 }
 
-/// Returns the fraction of a spot light's intensity at a cosine to its axis: 1 within the inner
-/// angle, 0 beyond the outer one (the ramp of KHR_lights_punctual). Lights::Light has `scale` and
-/// `offset`.
+/// Returns the fraction of a spot light's intensity in a direction with this cosine to the axis: 1
+/// within the inner angle, 0 beyond the outer angle (the ramp of KHR_lights_punctual). `scale` and
+/// `offset` are Lights::Light::spot_scale and ::spot_offset.
 template <class T>
 RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) {
   const T ramp = at_most(at_least(cosine * scale + offset, 0.0f), 1.0f);
@@ -78,14 +78,14 @@ struct LightPoint {
   WordOf<T> primitive;
 };
 
-/// All lights of a scene. Areas and distances are in units of about the scene's size, so that
-/// squares are within the range of float.
+/// All lights of a scene. The unit of areas and distances is about the scene's size, which keeps
+/// squares within the range of float; see per_unit().
 class Lights {
  public:
   /// How an integrator samples the lights.
   enum class Sampling : std::uint8_t {
-    kAll,  ///< every light at each hit (Whitted); there are no sources
-    kOne,  ///< one light at each hit, chosen by LightTree (paths); there is no ambient light
+    kAll,  ///< every light at each hit (Whitted); source_count() is 0
+    kOne,  ///< one light at each hit, chosen by LightTree (paths); ambient() is 0
   };
 
   /// The references must outlive this object. `camera_lights` replace the scene's own lights.
@@ -102,10 +102,10 @@ class Lights {
   [[nodiscard]] glm::vec3 background() const {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : own_.background;
   }
-  /// Returns the uniform radiance that approximates interreflection: the background's or, if that
-  /// is black, the lights' flux after many reflections, spread evenly over all surfaces ("A
-  /// progressive refinement approach to fast radiosity image generation", Cohen, Chen, Wallace and
-  /// Greenberg 1988). 0 with Sampling::kOne.
+  /// Returns the uniform radiance that approximates interreflection: the background's or, if the
+  /// background is black, the lights' flux after many reflections, spread evenly over all surfaces
+  /// ("A progressive refinement approach to fast radiosity image generation", Cohen, Chen, Wallace
+  /// and Greenberg 1988). 0 with Sampling::kOne.
   [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
   /// Returns the number of lights: point, area and directional lights, then the environment.
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
@@ -124,7 +124,7 @@ class Lights {
     glm::vec3 emission{0.0f};
     glm::vec3 position{0.0f};   ///< of a point light, or the direction towards a directional light
     float radius = 0.0f;        ///< of a point light that is a sphere, outside the scene
-    glm::vec3 spot_axis{0.0f};  ///< for is_spot, as the arguments of spot_falloff()
+    glm::vec3 spot_axis{0.0f};  ///< of a spot light; scale, offset: see spot_falloff()
     float spot_scale = 0.0f, spot_offset = 1.0f;
     float area = 0.0f;         ///< in square units
     bool is_textured = false;  ///< `emission` is the mean radiance; see radiance_at()
@@ -208,8 +208,7 @@ class Lights {
   }
 
   [[nodiscard]] bool any_power() const { return any_power_; }
-  /// Samples a source for a surface point and its unit normal (see LightTree). Requires
-  /// any_power().
+  /// Samples a source for a surface point and its unit normal (LightTree). Requires any_power().
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightTree::Sample sample_source(const glm::vec3& point,
                                                                const glm::vec3& normal,

@@ -22,8 +22,7 @@ inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; roug
 inline constexpr HitKind kIsBumpy = 128;           ///< a normal map
 inline constexpr HitKind kHitKinds = 256;          ///< number of masks
 
-/// Direction-independent parameters of a material: of MTL's illumination models (see Bsdf) or of
-/// the metallic-roughness model.
+/// Direction-independent parameters of MTL's models (see Bsdf) or of the metallic-roughness model.
 struct MaterialParameters {
   glm::vec3 diffuse{0.0f};  ///< multiplies the texture; at most 1
   glm::vec3 unlit{0.0f};    ///< multiplies the texture
@@ -42,7 +41,7 @@ struct MaterialParameters {
   /// Metallic-roughness materials only; textures multiply all of these.
   float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
   float specular = 1.0f;         ///< of dielectrics: reflectance at grazing angles
-  glm::vec3 reflectance{0.04f};  ///< of dielectrics at normal incidence, times specular; at most 1
+  glm::vec3 reflectance{0.04f};  ///< of dielectrics at normal incidence, before the factor specular
   const FacetAlbedo* facet_albedo = nullptr;  ///< of rough facets, or null
   const FacetAlbedo* glass_albedo = nullptr;  ///< of rough glass, or null
   HitKind kind = 0;                           ///< without bits that depend on the triangle

@@ -14,14 +14,14 @@ RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
 }
 
 /// The lobes for base colour c, metalness m, transmission t, specular weight w, and r0, the normal
-/// reflectance of the index of refraction times w and the specular colour. s is Schlick's weight of
-/// a cosine:
+/// reflectance of the index of refraction times w and the specular colour. s: Schlick's weight.
 ///
 /// * Facets (Ggx) reflect f0 + (f90 - f0) s with f0 = m c + (1 - m)(1 - t) r0 and
 ///   f90 = 1 - (1 - m) t - (1 - m)(1 - t)(1 - w).
-/// * Multiple scattering: the energy 1 - E (FacetAlbedo) that one facet does not reflect returns
-///   in a wide lobe (1 - E(view)) (1 - E(light)) / (1 - mean E), reduced by the facets' absorption
-///   ("Revisiting physically based shading at Imageworks", Kulla and Conty 2017, with Hill's F^2).
+/// * Multiple scattering: E is the single-scattering albedo of facets that absorb nothing
+///   (FacetAlbedo). The lost energy 1 - E returns in the wide lobe
+///   (1 - E(view)) (1 - E(light)) / (1 - mean E), reduced by absorption ("Revisiting physically
+///   based shading at Imageworks", Kulla and Conty 2017, with Hill's square of the mean Fresnel).
 /// * The diffuse base of a dielectric is (1 - m)(1 - t) c times
 ///   (1 - h(view))(1 - h(light)) / (1 - mean h), where h is the albedo of both lobes above in their
 ///   brightest channel. So a white material conserves energy, and the BRDF is reciprocal.
@@ -45,7 +45,7 @@ struct MetallicRoughnessLobes {
   Triple<T> specular;  ///< single-scattering albedo for the view
   Triple<T> multiple;  ///< multiple-scattering albedo
   Triple<T> diffuse;   ///< albedo of the diffuse base
-  /// Fraction of glass; index of refraction behind the interface over that in front of it.
+  /// Fraction of glass, and index of refraction behind the interface over the index in front.
   T glass, eta;
   T glass_gain;  ///< compensation for multiple scattering in glass
   MaskOf<T> is_glass;
@@ -108,7 +108,7 @@ struct MetallicRoughnessLobes {
     return (~kind & (kGlossy | kMirrors)) == 0;
   }
 
-  /// Returns the BRDF, per steradian without the cosine, for a direction in front.
+  /// Returns the BRDF, per steradian, without the cosine, for a direction in front of the surface.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     const T cosine = at_most(at_least(dot(ggx.normal, light), 0.0f), 1.0f);
     const Shares there = shares_at(cosine);
@@ -166,7 +166,7 @@ struct MetallicRoughnessLobes {
     return has_rough_glass() ? pdf * mirrored_chance(at_most(pair.cos_half, 1.0f)) : pdf;
   }
 
-  /// Returns the fraction of light that is not masked after leaving a sampled facet.
+  /// Returns the unmasked fraction of the light that a sampled facet reflects to `way`.
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const Triple<T>& way) const {
     const T cosine = dot(ggx.normal, way);
     return choose(cosine > 0.0f, ggx.g2_over_g1(view_cosine, cosine), T{});
@@ -182,7 +182,7 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
 
  private:
-  /// Returns the albedos, at a cosine, of facets that reflect 1 and Schlick's weight.
+  /// Returns the albedos, at a cosine, of facets with reflectance 1 and with Schlick's weight.
   [[nodiscard]] RAYGATE_INLINE Shares shares_at(const T& cosine) const {
     if (!is_rough()) return {spread<T>(1.0f), schlick_weight(cosine)};
     return albedo->at(cosine, alpha);

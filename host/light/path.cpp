@@ -17,7 +17,7 @@ constexpr float kRouletteThroughput = 0.25f;
 // Least pdf of a direction. Its inverse is within the range of float.
 constexpr float kMinPdf = 1e-20f;
 
-/// Relative probabilities of sampling each lobe: its albedo. Rough glass counts in `scatter`.
+/// Relative probabilities of sampling the lobes: their albedos. `scatter` includes rough glass.
 template <class T>
 struct LobeProbabilities {
   T mirror, transmission, scatter, sum;
@@ -47,8 +47,8 @@ RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
 }
 
 /// Computes PathState::light_over_camera_pdf (see LightPaths) of the rays spawned at a hit. Light
-/// paths carry flux: their throughput has the adjoint BSDF, and the cosine at the opposite end of
-/// each edge ("Robust Monte Carlo methods", 5.3).
+/// paths carry flux: their throughput is a product of adjoint BSDFs, and of the cosine at the
+/// opposite end of each edge ("Robust Monte Carlo methods", 5.3).
 template <bool kFromLight, class T>
 struct ReversePdf {
   T arrived;  ///< PathState::light_over_camera_pdf at the hit
@@ -341,8 +341,8 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
   add_light_sample(hits, 0, light, scattered_light(hits, light, scattered, mis_weight));
 }
 
-/// Adds light samples from surfaces of light paths to the camera's lens. First surfaces of paths
-/// are excluded, as camera paths find them by sampling lights.
+/// Adds light samples from surfaces of light paths to the camera's lens. First surfaces of light
+/// paths are excluded, because camera paths light them by sampling lights.
 template <class T>
 RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits) {
   constexpr int kCount = Hits<T>::kCount;

@@ -33,8 +33,8 @@ RAYGATE_INLINE W reversed_bits(W x) {
   return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
 }
 
-/// Computes Owen's nested uniform scrambling of a word with reversed bits: whether a bit is flipped
-/// depends on the more significant bits, here the lower ones.
+/// Computes Owen's nested uniform scrambling of a word with reversed bits: the more significant
+/// bits determine whether a bit is flipped. Here, these are the lower bits of x.
 template <class W>
 RAYGATE_INLINE W owen_scramble(W x, const W& key) {
   x += key;
@@ -45,9 +45,9 @@ RAYGATE_INLINE W owen_scramble(W x, const W& key) {
   return x ^ x * 0x8D22F6E6u;
 }
 
-/// Returns the second Sobol dimension with reversed bits: digit j is the sum modulo 2 of the
-/// index's digits i times binomial(i, j), which is odd if the bits of j are a subset of those of i.
-/// This takes five steps, one per bit of j.
+/// Returns the second Sobol dimension with reversed bits: digit j is the sum over i, modulo 2, of
+/// the index's digit i times binomial(i, j). The binomial is odd if the bits of j are a subset of
+/// the bits of i. The sum takes five steps, one per bit of j.
 template <class W>
 RAYGATE_INLINE W second_sobol(W index) {
   index ^= index >> 1 & 0x55555555u;
@@ -63,9 +63,9 @@ struct SquarePoint {
   T x, y;  ///< in [0, 1)
 };
 
-/// Returns point `index` of the stream `key`: the first two Sobol dimensions, a (0,2)-sequence.
-/// Each elementary interval of area 2^-k has one of 2^k successive points that begin at a multiple
-/// of 2^k. Each stream has its own Owen scrambling of both coordinates and of the order ("Practical
+/// Returns point `index` of the stream `key`: the first two Sobol dimensions, a (0,2)-sequence. Of
+/// 2^k successive points from a multiple of 2^k on, each elementary interval of area 2^-k contains
+/// one. Each stream has its own Owen scrambling of both coordinates and of the order ("Practical
 /// Hash-based Owen Scrambling", Burley 2020, with the permutation of Laine and Karras 2011).
 template <class T>
 RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T>& key) {
@@ -103,8 +103,8 @@ struct Frame {
   }
 };
 
-/// Returns the unit vector at an angle to the unit vector `axis`; `turns`, in [0, 1], is the
-/// azimuth around it.
+/// Returns the unit vector at the angle with this cosine and sine to the unit vector `axis`.
+/// `turns`, in [0, 1], is the azimuth around the axis in turns.
 template <class T>
 RAYGATE_INLINE Triple<T> spherical_direction(const Triple<T>& axis, const T& cosine, const T& sine,
                                              const T& turns) {

@@ -61,7 +61,8 @@ FacetAlbedo::FacetAlbedo(float index) {
       }
     }
   });
-  // Integrates the bilinear table times 4 x^3, x being the root of the cosine; two points per cell.
+  // Means weighted by the cosine c are integrals over 2 c dc = 4 x^3 dx, with x = sqrt(c). The
+  // table is linear in x between entries. Each cell has two Gauss points.
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column + 1 < kSize; ++column) {
       for (const float rest : {0.211324865f, 0.788675135f}) {

@@ -28,8 +28,7 @@ RAYGATE_INLINE T fresnel_reflectance(const T& cosine, const T& eta) {
   return choose(squared <= 0.0f, one, 0.5f * (across * across + parallel * parallel));
 }
 
-/// Returns the weight of Schlick's approximation (1994): 0 at normal incidence, 1 at grazing
-/// angles.
+/// Returns the weight of Schlick's approximation (1994), from 0 at normal incidence to 1.
 template <class T>
 RAYGATE_INLINE T schlick_weight(const T& cosine) {
   const T x = 1.0f - at_most(cosine, 1.0f), squared = x * x;
@@ -43,7 +42,7 @@ RAYGATE_INLINE Triple<T> reflect(const Triple<T>& view, const Triple<T>& normal)
 }
 
 /// The direction of light that travels along -view and is refracted by Snell's law at an interface
-/// with the unit normal `normal`, which is on the side of `view`; eta as above. For total
+/// with the unit normal `normal`, which is on the side of `view`. `eta` is as above. For total
 /// reflection, `exists` is not set.
 template <class T>
 struct Refraction {
@@ -65,7 +64,7 @@ struct Refraction {
 /// roughness, in [kLeast, 1]. Directions are unit vectors away from the surface.
 template <class T>
 struct Ggx {
-  static constexpr float kLeast = 0x1p-10f;  // lower bound of alpha, which float cosines resolve
+  static constexpr float kLeast = 0x1p-10f;  // least alpha: float cosines resolve no narrower lobes
 
   Triple<T> normal;
   T squared;  ///< alpha^2
@@ -82,18 +81,18 @@ struct Ggx {
   [[nodiscard]] RAYGATE_INLINE Pair pair(const Triple<T>& a, const Triple<T>& b) const {
     const Triple<T> sum = a + b;
     const T size = dot(sum, sum), along = dot(normal, sum);
-    // Computed separately, as cosines close to 1 are too coarse for narrow lobes.
+    // Computed from the vector: a sine from a cosine close to 1 is too coarse for narrow lobes.
     const Triple<T> across = sum - normal * along;
     const T ratio = size / (dot(across, across) + squared * along * along);
     return {kPerPi * squared * ratio * ratio, 0.5f * root(size)};
   }
 
-  /// Returns sqrt(1 + alpha^2 tan^2) times the cosine, from which Lambda follows.
+  /// Returns sqrt(1 + alpha^2 tan^2) times the cosine, from which Smith's Lambda follows.
   [[nodiscard]] RAYGATE_INLINE T stretched(const T& cosine) const {
     return root(squared + (1.0f - squared) * cosine * cosine);
   }
 
-  /// Returns G2 / (4 cos cos). The BRDF is this times D times the Fresnel reflectance.
+  /// Returns G2 / (4 a b) for cosines a, b. The BRDF is G2 / (4 a b) times D and the reflectance.
   [[nodiscard]] RAYGATE_INLINE T visibility(const T& a, const T& b) const {
     return 0.5f / (a * stretched(b) + b * stretched(a));
   }
@@ -108,8 +107,8 @@ struct Ggx {
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const T& view, const T& light) const {
     return light * (view + stretched(view)) / (light * stretched(view) + view * stretched(light));
   }
-  /// Returns G1: the same fraction of transmitted light, whose masking is independent of the
-  /// view's.
+  /// Returns G1: the unmasked fraction of the light that a sampled facet transmits. The masking of
+  /// this light is independent of the masking of the view.
   [[nodiscard]] RAYGATE_INLINE T g1(const T& light) const {
     return 2.0f * light / (light + stretched(light));
   }
@@ -120,7 +119,7 @@ struct Ggx {
                                                 const SquarePoint<T>& u) const {
     const Frame<T> frame(normal);
     const T alpha = root(squared);
-    // Scaled by alpha along the normal, the facets form a hemisphere.
+    // Scaling by alpha across the normal turns the ellipsoid of facets into a hemisphere.
     const Triple<T> squeezed = normalized(Triple<T>{
         alpha * dot(frame.u, view), alpha * dot(frame.v, view), at_least(dot(normal, view), 0.0f)});
     const T z = (1.0f - u.x) * (1.0f + squeezed.z) - squeezed.z;
@@ -133,9 +132,9 @@ struct Ggx {
   }
 };
 
-/// Two single-scattering albedos of GGX facets, by the cosine of a direction and alpha: integrals
-/// over the visible facets, interpolated bilinearly over the square roots of both. The error is
-/// below 0.01 for cosines of at least 0.05.
+/// A table of two single-scattering albedos of GGX facets, by the cosine of a direction and alpha.
+/// Entries are integrals over the visible facets. at() interpolates them bilinearly over the square
+/// roots of cosine and alpha. The error is below 0.01 for cosines of at least 0.05.
 class FacetAlbedo {
  public:
   /// Two albedos, each with one value per lane.
@@ -144,7 +143,7 @@ class FacetAlbedo {
     T first, second;
   };
 
-  /// Returns the table of mirrors. `first`: facets with reflectance 1; `second`: Schlick's weight.
+  /// Returns the table of mirrors. `first`: for reflectance 1; `second`: for Schlick's weight.
   [[nodiscard]] static const FacetAlbedo& of_mirrors();
   /// Returns the table of glass with this index of refraction, reflection plus transmission:
   /// `first` for light from outside, `second` from inside.

@@ -122,8 +122,8 @@ void ShadowRays::trace(std::span<const ShadowRay> rays, bool from_light, float e
                                    : ray.index;
     const glm::vec3 way = is_endless ? to : to - segment.from;
     const float size = largest(way);
-    // t of the end: the power of two by which the direction is scaled, as by scaled_direction(),
-    // which is slower.
+    // t of the end: the power of two by which `way` is divided. The direction equals the result of
+    // scaled_direction(), which is slower.
     auto end = std::bit_cast<float>(std::bit_cast<std::uint32_t>(size) & 0x7F800000u);
     if (end != 0.0f) [[likely]] {
       batch_[i].direction = way * (1.0f / end);

@@ -34,20 +34,21 @@ struct ShadowRay : LightSample {
 
 /// Traces shadow rays in batches.
 ///
-/// Rays of a point light start at the light, so that they share its polygon records, and end at the
-/// surface, whose own triangle is ignored. Rounding the direction moves the end by about one float;
-/// so a hit in the last 2^-10 of the distance is not conclusive, and the ray is traced again from
-/// the surface. Rays start at the surface for other lights, and for all if so many point lights
-/// exist that few have several rays. Rays to area lights end at 1 - 2^-16 of the distance, and the
-/// light's own triangle is ignored. Surfaces that transmit light without refraction attenuate it.
+/// Rays of a point light start at the light and share its polygon records. They end at the surface
+/// and ignore the surface's own triangle. Rounding the direction moves the end by about one float
+/// step. A hit in the last 2^-10 of the distance is therefore not conclusive, and the ray is traced
+/// again from the surface. Rays of other lights start at the surface, and so do all rays if there
+/// are more than 64 point lights, of which few would have several rays. Rays to area lights end at
+/// 1 - 2^-16 of the distance, and the light's own triangle is ignored. Surfaces that transmit light
+/// without refraction attenuate it.
 class ShadowRays {
  public:
   /// `through_refraction`: refracting glass attenuates shadow rays as if it did not refract.
-  /// Otherwise it blocks them: caustics light its shadow.
+  /// Otherwise, the glass blocks shadow rays, and caustics light its shadow.
   ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
              bool through_refraction);
 
-  /// Multiplies each ray's `radiance` by the transmittance along the ray. Adds its work to
+  /// Multiplies each ray's `radiance` by the transmittance along the ray. Adds the ray's work to
   /// work[ShadowRay::sample], unless `work` is empty.
   void resolve(std::span<ShadowRay> rays, std::span<RayWork> work = {});
 
@@ -56,12 +57,12 @@ class ShadowRays {
  private:
   /// A ray of the next batch.
   struct Segment {
-    // Constructed in place, as copying a temporary would stall.
+    // Constructed in place, because copying a temporary is slower.
     Segment(std::uint32_t number, const glm::vec3& origin, std::uint32_t primitive)
         : index(number), source(primitive), from(origin) {}
 
-    std::uint32_t index;   // index of its shadow ray
-    std::uint32_t source;  // the primitive at which it starts, or kNone: a light
+    std::uint32_t index;   // index of the shadow ray
+    std::uint32_t source;  // the primitive at which the segment starts; kNone: a light
     glm::vec3 from;
   };
 

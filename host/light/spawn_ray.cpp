@@ -11,12 +11,15 @@
 
 // Why c is a bound
 //
-// Let T have the vertices v_i, and let S be another triangle. For any vector a let g_i = a.v_i -
-// max a.y over the points y of S; the maximum is at a vertex. A point X = sum w_i v_i of T has a.X
-// - a.y >= sum w_i g_i for every y of S. If no g_i is negative, the plane between T and S keeps X
-// at least sum w_i g_i / |a| >= w sum g_i / |a| away from S, where w is the least weight. g_i may
-// be negative by up to `slack`, for rounding, which margin() compensates. The bound holds for every
-// a; the vectors that are tried separate triangles that touch in an edge or a corner.
+// c w is a lower bound of the distance from a point X of a triangle T to another triangle S.
+//   1. Let v_i be T's vertices, w_i the barycentric coordinates of X, and w the least w_i. So
+//      X = sum w_i v_i.
+//   2. For a vector a, let g_i = a.v_i - max a.y over all points y of S. A vertex has the maximum.
+//   3. Every point y of S has a.X - a.y >= sum w_i g_i. So if no g_i is negative, the distance from
+//      X to y is at least sum w_i g_i / |a| >= w sum g_i / |a|.
+//   4. Hence c = sum g_i / |a| is valid for every such a. The largest c of several a is used. The a
+//      that are tried separate triangles that touch in an edge or a corner.
+//   5. Rounding may make a g_i negative by up to `slack`. margin() compensates for this error.
 
 namespace raygate {
 namespace {
@@ -34,8 +37,8 @@ class NeighborClearanceSearch {
     normal_ = cross(vertex_[1], vertex_[2], normal_sizes_);
     const double area = glm::length(normal_);
     const glm::dvec3 unit_normal = area > 0.0 ? normal_ / area : glm::dvec3(0.0);
-    // Axes of planes through the edges. Planes 0 to 2 are parallel to the coordinate axis closest
-    // to the normal, planes 3 to 5 to the normal. Most neighbours are behind one of planes 0 to 2.
+    // Normals of planes through the edges that are parallel to the coordinate axis closest to the
+    // normal (0 to 2; most neighbours are behind one of these planes) or to the normal (3 to 5).
     const glm::dvec3 sizes = glm::abs(normal_);
     const int wider = sizes.x < sizes.y ? 1 : 0, along = sizes[wider] < sizes.z ? 2 : wider;
     glm::dvec3 parallel(0.0);
@@ -119,8 +122,8 @@ class NeighborClearanceSearch {
   using Vectors3 = Triple<DoubleQuad>;
 
   static constexpr std::size_t kMaxOverlaps = 128;
-  // A triangle of a fan of 100,000 has as many neighbours. With more leaves c is 0, and
-  // RaySpawner::search() finds origins.
+  // Limits the time: in a fan of 100,000 triangles, each has as many neighbours. With more leaves,
+  // c is 0 (unknown), and RaySpawner::search() finds origins.
   static constexpr int kMostLeaves = 1024;
   static constexpr double kShareOfHeight = 0.125;  // largest c, as a fraction of the height
   // Triangles nearer than this fraction of the largest c are overlaps.
@@ -136,7 +139,7 @@ class NeighborClearanceSearch {
   }
 
   /// Returns c with respect to each single triangle in the mask, or any value of at least length_.
-  /// `exact`: their corners, if `corners` are rounded; otherwise null.
+  /// `exact`: the triangles' corners, if `corners` are rounded; otherwise null.
   template <Vectors kCode>
   [[nodiscard]] RAYGATE_INLINE DoubleQuad clearances(const float* corners, const Corners* exact,
                                                      std::uint32_t count, LaneMask mask) const {
@@ -164,7 +167,7 @@ class NeighborClearanceSearch {
     Vectors3 y[3];
     for (int v = 0; v < 3; ++v) y[v] = {coordinates[v][0], coordinates[v][1], coordinates[v][2]};
     DoubleQuad best = choose(near, DoubleQuad{}, spread<DoubleQuad>(kInfinity));
-    // Tries an axis and returns whether all values are sufficient.
+    // Tries an axis, and returns whether all values of c reach length_.
     const auto try_axis = [&](const Vectors3& axis) RAYGATE_BODY {
       best = maximum(best, apart(axis, y));
       return sign_mask(whole(best >= length_)) == (LaneMask{1} << kQuad) - 1;
@@ -185,7 +188,7 @@ class NeighborClearanceSearch {
     return best;
   }
 
-  /// Returns the sum of the g_i: 0 if one is negative, infinite if all exceed reach_.
+  /// Returns sum g_i ("Why c is a bound"): 0 if one is negative, infinity if all reach reach_.
   [[nodiscard]] RAYGATE_INLINE DoubleQuad apart(const Vectors3& axis,
                                                 const Vectors3 (&y)[3]) const {
     const DoubleQuad highest = maximum(maximum(dot(axis, y[0]), dot(axis, y[1])), dot(axis, y[2]));
@@ -226,14 +229,14 @@ bool lies_beyond(const Corners& other, const Corners& hit, int side) {
       other, [&](const glm::dvec3& vertex) { return orient3d(vertex, hit) != side; });
 }
 
-// A float step is at most 2^-23 of the value, or 2^-149.
+// A float step is at most 2^-23 of the value, or 2^-149, so the result is at least 32 steps.
 double spawn_reach(const Corners& corners) {
   const double size = std::max({largest(corners[0]), largest(corners[1]), largest(corners[2])});
   return std::max(0x1p-18 * size, 0x1p-144);
 }
 
-// For a difference of two points, the error of its coordinate along a unit vector is less than
-// 2^-49 times their largest coordinate.
+// The coordinate of a difference of two points along a unit vector has an error below 2^-49 times
+// the points' largest coordinate. slack_ is 4 times this bound, margin_ 16 times.
 NeighborClearances::NeighborClearances(const Bvh& bvh)
     : bvh_(bvh),
       margin_(0x1p-45f * largest_coordinate(bvh)),
@@ -270,46 +273,48 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 
 // How far O' is from X
 //
-// Candidate k is the float nearest to X + 2^k u m, where m is the triangle's normal on the wanted
-// side, scaled to a largest component of 1 (alternately, along the ray). Rounding to float moves
-// each coordinate by at most u / 2, as long as no coordinate is rounded at a step larger than u: so
-// by (u / 2) |n|_1 along the unit normal n, while the offset moves it by 2^k u / |n|_max. For unit
-// vectors |n|_1 |n|_max <= (1 + sqrt(3)) / 2 < 1.37, so already k = 0, with u against 0.69 u, is on
-// the right side; the difference, 0.3 u, far exceeds the error of X in double. If X + u m crosses
-// into the next binade its step doubles, and k = 1 suffices.
+// Candidate k for O' is the float point nearest to X + 2^k u m. u is one float step of the largest
+// coordinate of X. m is the triangle's normal on the wanted side, scaled so that its largest
+// component is 1. (search() also tries the ray's direction for m.) Let n be the unit normal, |n|_1
+// the sum and |n|_max the largest of its components' magnitudes. All distances are along n.
+//   1. The offset 2^k u m moves the point by 2^k u / |n|_max.
+//   2. If no coordinate is rounded at a step larger than u, rounding moves each coordinate by at
+//      most u / 2, and the point by at most (u / 2) |n|_1.
+//   3. Unit vectors have |n|_1 |n|_max <= (1 + sqrt(3)) / 2 < 1.37. So rounding moves the point by
+//      less than 0.69 u / |n|_max, and candidate 0 is on the wanted side.
+//   4. The remaining distance, at least 0.3 u, far exceeds the error of X in double.
+// If X + u m crosses into the next binade, the step doubles, and candidate 1 suffices.
 
 // Side of candidate 0
 //
-// The error of X in double is at most u / 16 on each axis; otherwise the lane is rejected. With X
-// and m this accurate, and no coordinate rounded by more than u / 2, candidate 0 is beyond the
-// plane by
+// find_candidates() rejects a lane if X, computed in double, may be off by more than u / 16 on an
+// axis. So, by 1 to 3 above, candidate 0 is beyond the plane by at least
 //   u / |n|_max - (u / 2 + u / 16) |n|_1 > u (1 - 1.37 * 9 / 16) / |n|_max > 0.
 //
-// Error of X: a component of NeighborClearance::normal is off by less than 1, so D = (A - O) . N is
-// off by less than |A - O|_max, and I . N by less than 2, as no component of I is larger (rounding
-// of the dot products is part of kNormalError).
+// Error of X = O + t I, with t = D / (I . N) and D = (A - O) . N. N is NeighborClearance::normal.
+//   1. The errors of N's components add up to less than 1, rounding of dot products included.
+//   2. So D is off by less than |A - O|_max. I . N is off by less than 2, because |I|_max < 2.
+//   3. So t is off by less than (|A - O|_max + 2 t) / (I . N), and t I by less than twice that.
 //
 // Why no triangle is near
 //
-// Let w be the least of the three weights of the exact X, and c the triangle's clearance: all other
-// triangles are at least c w - margin away, or farther than spawn_reach, or an overlap of the
-// triangle (see NeighborClearances), or in the triangle's plane. Triangles that could invalidate
-// candidate 0 are within 8 u of the exact X, and within 5 u of the candidate on each axis: in the
-// box of the candidate and X in double, enlarged by 2 u on every side. 16 u are within spawn_reach.
-//
-// c times a weight is computed from the candidate p, in float, as G . (p - A). G is c times the
-// weight's gradient: a vector in the triangle's plane, no longer than 1/8, as c is at most an
-// eighth of the least height. So the offset u of p from the plane does not matter, and rounding p
-// changes c w by less than u. With s = |p - A|_1, rounding G, p - A and the dot product changes it
-// by less than 2^-23 s; the third weight, c minus the two others, by less than 2^-21 (s + c). So no
-// triangle is near if
-//   c w > 16 u + 2^-20 (s + c) + margin
-// (8 of the 16 u suffice) and no overlap is within 16 u of the candidate.
+// Let p be candidate 0, w the exact X's least weight, c the triangle's clearance, s = |p - A|_1.
+//   1. Only triangles within 8 u of X can invalidate p: on each axis, they are within 5 u of p, in
+//      the box of p and the computed X enlarged by 2 u on every side. spawn_reach exceeds 16 u.
+//   2. Other triangles are at least c w - margin away from X, unless they are farther than
+//      spawn_reach, overlaps, or in the triangle's plane (see NeighborClearance).
+//   3. c times a weight is computed in float as G . (p - A). G is c times the weight's gradient. G
+//      is in the triangle's plane, and |G| <= 1/8, because c is at most 1/8 of the least height.
+//   4. So the offset of p from the plane has no effect, and rounding p changes c w by less than u.
+//   5. Rounding G, p - A and the dot product changes c w by less than 2^-23 s. Computing the third
+//      weight as c minus the two others changes c w by less than 2^-21 (s + c).
+// So no triangle is near if no overlap is within 16 u of p and, with c w as computed,
+//   c w > 16 u + 2^-20 (s + c) + margin.  (8 u would suffice.)
 
 namespace {
 
 /// Returns whether double precision proves that no point of the triangle is in the box, by the
-/// separating axis theorem. The box's own axes have been tested before.
+/// separating axis theorem. The caller has tested the box's own axes.
 bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& triangle) {
   for (const glm::dvec3& corner : triangle) {
     if (corner == glm::clamp(corner, glm::dvec3(low), glm::dvec3(high))) return false;
@@ -393,8 +398,8 @@ RAYGATE_INLINE Triple<DoubleQuad> widened(const Triple<FloatQuad>& x) {
 /// Returns the distance from non-negative floats to the next ones.
 RAYGATE_INLINE FloatQuad step_of(const FloatQuad& x) { return float_of(bits_in(x) + 1) - x; }
 
-/// Sets `point` to candidate 0 of each hit, on the incident side if `way` is -1 and on the
-/// transmitted side if it is 1. It is valid if `is_clear` is -1 and no overlap is within `reach`.
+/// Sets `point` to candidate 0 of each hit, on the incident (`way` is -1) or the transmitted side
+/// (1). A candidate is valid if `is_clear` is -1 and no overlap is within `reach`.
 template <Vectors kCode>
 RAYGATE_INLINE void find_candidates(const SpawnHits& hits, const FloatQuad& way, float margin,
                                     Triple<FloatQuad>& point, FloatQuad& reach, IntQuad& is_clear) {
@@ -548,7 +553,7 @@ SpawnOrigin RaySpawner::search(const Ray& ray, std::uint32_t primitive, SpawnSid
       glm::dvec3(ray.direction) * (side == SpawnSide::kIncident ? -1.0 : 1.0)};
   const auto good = [&](const glm::vec3& candidate) {
     if (orient3d(candidate, hit) != sign) return false;
-    // The box of X and the candidate, enlarged for the error of X and for rounding.
+    // The box of X and the candidate. Enlarging covers the error of X and rounding.
     const glm::dvec3 c(candidate);
     const glm::vec3 low(glm::min(c, x) - 2.0 * step), high(glm::max(c, x) + 2.0 * step);
     const auto is_between = [&](std::uint32_t other_primitive, const Corners& other) {

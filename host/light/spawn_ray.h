@@ -1,5 +1,5 @@
-// Origins of rays that leave a surface: reflected, refracted, or towards a light. The clearance of
-// a triangle, its distance from other triangles, decides most of them.
+// Origins of rays that leave a surface: reflected, refracted, or towards a light. Most origins
+// follow from the clearance of a triangle: its distance from other triangles.
 #pragma once
 
 #include <atomic>
@@ -30,13 +30,13 @@ using Overlaps = std::vector<Overlap>;
 
 /// The clearance of a triangle ABC for rays that start on it: one cache line.
 ///
-/// Every other triangle is at least c w - margin() away from each point of this one, where w is the
-/// smallest of the point's barycentric coordinates; or it is farther than spawn_reach(), one of the
-/// overlaps, or in the same plane. Triangles that touch others only at edges and vertices have no
-/// overlaps, and c is a fraction of their smallest height.
+/// Let w be the smallest barycentric coordinate of a point of ABC. Every other triangle is at least
+/// c w - margin() away from the point, unless it is farther than spawn_reach(), one of the
+/// overlaps, or in the plane of ABC. If ABC touches others only at edges and vertices, it has no
+/// overlaps, and c is a fraction of its smallest height.
 struct alignas(64) NeighborClearance {
-  double normal[3] = {};  ///< (B-A) x (C-A) times a power of two, with errors below 1
-  /// c, at most 1/8 of the smallest height. 0: unknown. Negative if there are overlaps.
+  double normal[3] = {};  ///< (B-A) x (C-A) times a power of two; errors add up to less than 1
+  /// c, at most 1/8 of the smallest height; -c if there are overlaps; 0 if unknown.
   float length = 0.0f;
   float corner[3] = {};       ///< A
   float gradient[2][3] = {};  ///< in-plane gradients of c times the weights of B and C
@@ -47,7 +47,7 @@ struct alignas(64) NeighborClearance {
 [[nodiscard]] double spawn_reach(const Corners& corners);
 
 /// Returns whether no point of `other` is strictly on the given side (as in orient3d) of the plane
-/// of `hit`. Lines from that plane to that side then miss `other`.
+/// of `hit`. If so, lines from the plane to this side miss `other`.
 [[nodiscard]] bool lies_beyond(const Corners& other, const Corners& hit, int side);
 
 /// The clearances and overlaps of all triangles of a BVH, computed on first use and stored, except
@@ -74,7 +74,7 @@ class NeighborClearances {
         known_[primitive].clearance.load(std::memory_order_acquire);
     return clearance != nullptr ? *clearance : find(primitive);
   }
-  /// Prefetch the clearance of a primitive of a later call, in two steps.
+  /// Prefetch the clearance of a primitive for a later call: prefetch(), then prefetch_again().
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const {
     if (!bvh_.is_instanced(primitive)) __builtin_prefetch(&known_[primitive]);
   }
@@ -130,20 +130,19 @@ struct SpawnOrigin {
 
 /// Finds origins for secondary rays without an epsilon.
 ///
-/// Let X be the exact point, hardly ever a float, in which a ray first hits a triangle. The origin
-/// O' is a float point near X. It lies strictly on the side of the ray's points just before X
-/// (kIncident) or just after it (kTransmitted), for the triangle's plane and for the plane of every
-/// other triangle near on that side, decided in exact arithmetic. So
-///   * no triangle lies between X and O': none is skipped, even in the sharpest corner;
-///   * a ray from O' that leaves the triangle's plane (decided exactly by leaves()) never hits that
-///     triangle again.
+/// Let X be the exact point, rarely a float, at which a ray first hits a triangle. The origin O' is
+/// a float point near X. O' lies strictly on the side of the ray's points just before X (kIncident)
+/// or just after X (kTransmitted). This holds for the triangle's plane and for the plane of every
+/// other triangle near O' on this side. Exact arithmetic decides the sides. So
+///   * no triangle lies between X and O', so none is skipped, even in the sharpest corner;
+///   * a ray from O' that leaves the triangle's plane (see leaves()) never hits the triangle again.
 ///
-/// Distance: X is computed in double from the corners. Let u be the larger of its error and one
-/// float step (ulp) of its largest coordinate. If no other triangle is within 4 u of X, O' is
+/// Distance: X is computed in double from the corners. Let u be the larger of X's error and one
+/// float step (ulp) of X's largest coordinate. If no other triangle is within 4 u of X, O' is
 /// within 1.5 u (3 u next to a power of two) of the computed X on each axis (proof in
-/// spawn_ray.cpp). In narrower corners O' moves away from X by powers of two, along the normal or
-/// the ray, up to the ray's origin, so that a convex room always has an O' for kIncident. Corners
-/// narrower than the precision of float may have none; the path ends there.
+/// spawn_ray.cpp). In narrower corners, candidates for O' are farther away, by powers of two times
+/// u, along the normal or the ray. The last is the ray's origin, so a convex room always has an O'
+/// for kIncident. Corners narrower than the precision of float may have no O'; paths end there.
 class RaySpawner {
  public:
   /// `clearances` must outlive this object.

@@ -64,7 +64,7 @@ struct Surface {
   Triple<T> specular_color;
   Triple<T> glow;  ///< emission texture's factor; unset unless the kind interpolates and emits
   /// Whether the ray arrives from outside: from the side to which the file's normals point or,
-  /// without normals, on which the vertices are counter-clockwise.
+  /// without normals, from which the vertices are counter-clockwise.
   MaskOf<T> outside;
 
   /// Dot product of a direction and the triangle's normal, in double, and whether its sign is sure.
@@ -109,11 +109,12 @@ struct Surface {
   }
   Triple<WideOf<T>> own_normal;  ///< (B - A) x (C - A), of any length
   Triple<WideOf<T>> own_size;    ///< per component of own_normal: sum of its terms' magnitudes
-  T side;                        ///< I . N of the ray, with exact sign
+  T side;                        ///< ray's direction . own_normal, with exact sign
 };
 
 /// Returns the barycentric coordinates up to a common factor: I . (B x C), I . (C x A), I . (A x
-/// B), corners relative to the origin. All have the same sign, except for rounding.
+/// B), with the ray's direction I and the corners A, B, C relative to the ray's origin. All have
+/// the same sign, except for rounding.
 template <class D>
 RAYGATE_INLINE Triple<D> unscaled_weights(const Triple<D>& origin, const Triple<D>& direction,
                                           const Triple<D> (&corners)[3]) {

@@ -33,8 +33,7 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
   IncidentLight<T> light;
   if (own.kind == Kind::kArea) {
     const auto number = static_cast<std::uint32_t>(i - lights.points().size());
-    // Slightly beside the centre of a quadrilateral, whose triangles share an edge there: rays to
-    // an edge need exact arithmetic.
+    // Avoids the shared edge at a quadrilateral's centre: rays to an edge need exact arithmetic.
     const bool in_middle = shading.settings.samples == 1 && own.patches == 1;
     const SquarePoint<T> centre = {spread<T>(0.5f + 0x1p-11f), spread<T>(0.5f)};
     const LightPoint<T> point =
@@ -103,7 +102,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     }
     reflected = reflected * facets.g2_over_g1(reflect(surface.view, facet));
     next.path.throughput = hits.path.throughput * reflected;
-    // Marks the ray: lights are sampled for these facets, so its hit adds no emission.
+    // Marks the ray: lights are sampled for these facets, so the ray's hit adds no emission.
     next.path.pdf = spread<T>(1.0f);
   }
   next.is_wanted = T{} > 0.0f;
@@ -128,8 +127,8 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   }
 }
 
-/// Spawns the rays whose histories are in the mask: reflected, refracted, and straight through
-/// holes and clear surfaces, which do not change the history.
+/// Spawns the rays whose histories are in PathState::supersampled: reflected, refracted, and
+/// straight through holes and clear surfaces. Going straight does not change the history.
 template <class T>
 RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
   const Bsdf<T>& bsdf = hits.bsdf;

@@ -15,16 +15,15 @@ namespace raygate {
 /// A set of triangles in a BVH, for ray queries. Which triangles are hit, and in which order, is
 /// decided exactly on the given numbers (except for underflow, see below): a ray through an edge
 /// or a corner of a closed mesh hits exactly one of the triangles that meet there, without leaks.
-/// Of two hits at equal distance the one with the lower triangle index comes first. Queries are
-/// thread-safe. They work in any rounding mode, by setting IEEE 754 arithmetic and restoring the
-/// mode.
+/// Of two hits at equal distance, the hit with the lower triangle index comes first. Queries are
+/// thread-safe. They set IEEE 754 arithmetic and restore the caller's mode when they return.
 class Tracer {
  public:
   using Point = std::array<double, 3>;
   using Triangle = std::array<Point, 3>;
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  /// A ray. Its hits are P = origin + t direction with 0 < t < limit.
+  /// A ray. Its hits are points P = origin + t direction with 0 < t < limit.
   struct Ray {
     Point origin{}, direction{};  ///< direction of any length; a zero direction hits nothing
     double limit = std::numeric_limits<double>::infinity();  ///< positive
@@ -32,14 +31,15 @@ class Tracer {
   struct Hit {
     std::uint32_t triangle = kNone;                      ///< triangle index; kNone: a miss
     double t = std::numeric_limits<double>::infinity();  ///< relative error at most 2^-33
-    /// P = (1 - u - v) A + u B + v C. Each weight has an error of at most 2^-34; none is negative.
+    /// P = (1 - u - v) A + u B + v C for the triangle's corners A, B, C. The errors of u and v are
+    /// at most 2^-34. None of the three weights is negative.
     double u = 0.0, v = 0.0;
   };
 
   /// Builds the BVH on `threads` threads. Coordinates must be finite, with a magnitude of at most
-  /// 2^126; triangles without area are allowed, and never hit. The triangles can be freed
-  /// afterwards. Throws std::invalid_argument for other coordinates, and std::runtime_error if the
-  /// machine's arithmetic does not conform to IEEE 754.
+  /// 2^126. Triangles without area are allowed, but are never hit. `triangles` can be freed after
+  /// the constructor returns. Throws std::invalid_argument for other coordinates, and
+  /// std::runtime_error if the machine's arithmetic does not conform to IEEE 754.
   explicit Tracer(std::span<const Triangle> triangles, int threads = 1);
   ~Tracer();
   Tracer(Tracer&&) noexcept;
@@ -50,7 +50,7 @@ class Tracer {
   //
   // Rays are traced with the direction scaled by a power of two, so that its largest component is
   // in [1, 2), and with the limit divided by that power. All coordinates are rounded to multiples
-  // of 2^-149; those of at least 2^-97 stay exact. If the triangles' coordinates are not all
+  // of 2^-149; magnitudes of at least 2^-97 stay exact. If the triangles' coordinates are not all
   // floats, origins are rounded to binary64 relative to a point near the middle of the triangles.
 
   /// Sets hits[i] to the nearest hit of rays[i]. Both spans must have the same size.

@@ -94,7 +94,7 @@ struct SceneKeywords : Keywords {
     read(settings);
   }
   std::optional<double> smooth;
-  bool refuses = false;  // faces without area
+  bool refuses = false;  // faces without area are errors
 };
 
 glm::dvec3 vector_at(const Vectors3& vectors, std::size_t i) {

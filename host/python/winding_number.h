@@ -39,7 +39,7 @@ class WindingNumbers {
   /// `away`: the unit vector opposite to the ray.
   ///
   /// The crossings are exact for a mesh whose open edges are closed by strips to infinity in
-  /// direction `away`. The solid angles of these strips are subtracted.
+  /// direction `away`. The result excludes the solid angles of these strips.
   [[nodiscard]] Number at(const glm::dvec3& point, double crossings, const glm::dvec3& away) const {
     glm::dvec3 at, rounding;
     for (int k = 0; k < 3; ++k) {
@@ -61,11 +61,11 @@ class WindingNumbers {
       const double x = size_a * size_b + glm::dot(a, b) + glm::dot(b, away) * size_a +
                        glm::dot(a, away) * size_b;
       result.value += std::atan2(y, x) * times / (2.0 * std::numbers::pi);
-      // (x, y) is off by less than 2^-47 |a| |b|, and by 4.2 moved (|a| + |b| + moved) as the point
-      // is: each of |a||b|, a.b, b.t |a| and a.t |b| changes by moved (|a| + |b| + moved) at most,
-      // and y by moved (|a| + |b|). The angle over 2 pi is off by a quarter of that over |(x, y)|,
-      // or by 1 where pi may be -pi. The rest of the bound covers the rounding of atan2 and of the
-      // sums.
+      // `off` bounds the error of (x, y). Rounding adds less than 2^-47 |a| |b|. The point is off
+      // by `moved`, so each of the four terms of x is off by at most moved (|a| + |b| + moved), and
+      // y by moved (|a| + |b|): together less than 4.2 moved (|a| + |b| + moved). The angle over 2
+      // pi is then off by off / 4 / |(x, y)|, or by 1 where atan2 may give -pi for pi. The rest of
+      // the bound covers the rounding of atan2 and of the sums.
       const double off = 0x1p-46 * size_a * size_b + 4.2 * moved * (size_a + size_b + moved);
       const bool may_jump = x <= off && std::abs(y) <= off;
       result.error +=
@@ -80,7 +80,7 @@ class WindingNumbers {
 
   const Bvh& bvh_;
   glm::dvec3 origin_;
-  std::map<Ends, int> open_edges_;  // by its ends: triangles along an edge minus those against it
+  std::map<Ends, int> open_edges_;  // by edge: triangles along it minus against it
 };
 
 }  // namespace raygate

@@ -15,7 +15,7 @@ static_assert(kErrorBlock % kBlockWidth == 0 && kErrorBlock % kBlockHeight == 0)
 constexpr int kSquare = 8;
 constexpr std::size_t kManySamples = 1 << 14;  // per batch
 
-/// Visits the blocks of width x height that cover `rect`, row by row. The last ones may be smaller.
+/// Visits blocks of up to width x height that cover `rect`, row by row.
 template <class Visit>
 void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit) {
   for (int y = rect.y0; y < rect.y1; y += height) {

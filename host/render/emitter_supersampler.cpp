@@ -42,7 +42,7 @@ EmitterSupersampler::EmitterSupersampler(const RenderContext& context, Intersect
       counts_work_(counts_work),
       all_(kDirect),
       stats_(stats) {
-  // Whitted images have few samples: finding more histories takes longer than they save.
+  // Whitted images have few samples, so finding more histories would cost more than it saves.
   if (context.settings.integrator == IntegratorKind::kPath &&
       std::ranges::any_of(context.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
     all_ = kAllHistories;

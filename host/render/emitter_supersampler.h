@@ -13,18 +13,18 @@
 
 namespace raygate {
 
-/// Bit mask of a pixel's histories (PathState::specular_history); kUnknownHistories before find().
+/// Mask of a pixel's PathState::specular_history: bit h is history h. Initially kUnknownHistories.
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 
-/// Supersamples the outlines of emitters. These are much brighter than their surroundings, so the
-/// pixels there are the noisiest of an image, whether the camera sees them directly or through up
-/// to four mirrors and glass interfaces. Additional rays collect only emission there, which is
-/// cheap: no lights, shadows or choice of a lobe. The pixels' samples omit that emission.
+/// Supersamples the outlines of emitters that the camera sees directly or through up to four
+/// mirrors and glass interfaces. Emitters are much brighter than their surroundings, so the pixels
+/// on their outlines are the noisiest. Additional rays collect only emission. They are cheap: they
+/// sample no lights and no lobes. The pixels' own samples omit this emission.
 ///
-/// A pixel has a history if rays with this history through pixel corners, within the radius of the
-/// pixel's filter, find different emission. The choice does not depend on any sample, so it adds no
-/// bias. Emitters that no ray through a corner meets are not found.
+/// find() traces a ray through each pixel corner within the radius of a pixel's filter. A history
+/// is in the pixel's mask if rays with this history find different emission. No mask depends on
+/// samples, so there is no bias. Emitters that no ray through a corner meets are missed.
 class EmitterSupersampler {
  public:
   /// The references must outlive this object. `counts_work`: whether tests and doubts are counted.
@@ -32,12 +32,12 @@ class EmitterSupersampler {
   EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work,
                       RenderStats& stats);
 
-  /// Finds the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
-  /// Adds the work to `work`, by pixel of the tile, unless `work` is empty.
+  /// Sets the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
+  /// Adds the work to `work`, indexed by pixel of the tile, unless `work` is empty.
   void find(const Film& film, const PixelRect& tile, std::span<HistoryMask> histories,
             std::span<RayWork> work);
 
-  /// Adds to sums[i] the emission that samples of pixels[i] omit. `work` as in find().
+  /// Adds to sums[i] the emission that samples of pixels[i] omit. `work` is as in find().
   void supersample(std::span<const PixelSamples> pixels, std::span<const HistoryMask> histories,
                    std::span<std::array<ExactAccumulator, 3>> sums, std::span<RayWork> work);
 
@@ -53,7 +53,7 @@ class EmitterSupersampler {
   Integrator integrator_;
   bool counts_work_;
   HistoryMask all_;     // histories that can occur
-  float least_ = 0.0f;  // dimmer emission is not supersampled
+  float least_ = 0.0f;  // least radiance that is supersampled
   RenderStats& stats_;
   RayBatch batch_;
   ShadingOutput output_;

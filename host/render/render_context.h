@@ -30,8 +30,8 @@ struct RenderContext {
 inline constexpr std::uint32_t kFilterStream = 0, kEmitterStream = 7, kLensStream = 8;
 
 /// Returns the camera ray of sample `index` of a pixel. `key` is the pixel's pixel_key; `stream` is
-/// the stream of positions in the filter. With one sample per pixel the ray goes through the
-/// centres of pixel and lens.
+/// the random stream of the positions in the pixel's filter. With one sample per pixel the ray goes
+/// through the centres of pixel and lens.
 [[nodiscard]] RAYGATE_INLINE Ray camera_ray(const RenderContext& context, int pixel_x, int pixel_y,
                                             std::uint32_t key, std::uint32_t index,
                                             std::uint32_t stream) {

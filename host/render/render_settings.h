@@ -16,20 +16,20 @@ struct RenderSettings : IntegratorSettings {
   int width = 640, height = 480;  ///< size of the whole frame, at least 1
   PixelRect window;               ///< pixels to render, within the frame; empty: the whole frame
   int threads = 1;                ///< at least 1; does not affect the film
-  int first_sample = 0;           ///< samples [first, end) are rendered
-  int end_sample = 0;             ///< 0: all samples, starting at the first
+  int first_sample = 0;           ///< renders samples [first_sample, end_sample)
+  int end_sample = 0;             ///< 0 stands for `samples`
   /// Above 0: adaptive sampling to this error, in steps of an 8-bit display after `exposure` stops
   /// (see has_converged in adaptive_sampling.h); `samples` is the maximum. The window must begin
   /// and end at multiples of kErrorBlock or at the frame's edges, and first_sample and end_sample
   /// must be 0. The film has FilmSums::error.
   double error = 0.0;
   double exposure = 0.0;
-  ReconstructionFilter filter = ReconstructionFilter::kBlackmanHarris;  ///< with several samples
+  ReconstructionFilter filter = ReconstructionFilter::kBlackmanHarris;  ///< if samples > 1
   std::uint64_t seed = 0;    ///< seed of all random numbers
   ExtraChannels channels{};  ///< in addition to colour, depth, normal and primitive
 };
 
-/// Callbacks of a render, called on the thread that called render(). Empty ones are skipped.
+/// Callbacks of a render, called on the thread that called render(). Empty callbacks are skipped.
 struct RenderMonitor {
   /// Receives the fraction of passes over tiles that are complete, in [0, 1], periodically.
   /// Returning false stops the render.
@@ -45,15 +45,15 @@ struct RenderMonitor {
 /// Statistics of a render. Seconds of parts are sums over the threads; `wall_seconds` is elapsed
 /// time, `processor_seconds` the processor time of all threads.
 struct RenderStats {
-  std::uint64_t rays = 0;         ///< number of rays of all kinds
-  std::uint64_t camera_rays = 0;  ///< camera rays among `rays`
-  std::uint64_t shadow_rays = 0;  ///< shadow rays among `rays`; the rest are reflected or refracted
-  std::uint64_t point_doubts = 0;  ///< hits whose P the host computed, without shadow rays
+  std::uint64_t rays = 0;          ///< number of rays of all kinds
+  std::uint64_t camera_rays = 0;   ///< camera rays among `rays`
+  std::uint64_t shadow_rays = 0;   ///< shadow rays among `rays`; the rest leave surfaces or lights
+  std::uint64_t point_doubts = 0;  ///< hits whose point P the host computed; excludes shadow rays
   IntersectCounters intersect;     ///< summed over the threads' intersectors
   double shade_seconds = 0.0;      ///< generating and shading rays
   double wall_seconds = 0.0;
   double processor_seconds = 0.0;
-  std::uint64_t spare_samples = 0;  ///< samples saved by RenderSettings::error
+  std::uint64_t spare_samples = 0;  ///< samples that adaptive sampling did not need
   int missing_threads = 0;          ///< threads that could not be started
   bool cancelled = false;           ///< the monitor stopped the render; the film is incomplete
 };

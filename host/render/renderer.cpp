@@ -25,8 +25,8 @@
 namespace raygate {
 namespace {
 
-/// The threads of a render, which take tiles from one queue. The calling thread reports progress
-/// and makes snapshots, so that no worker waits for a terminal or a disk.
+/// The threads of a render. They take tiles from one queue. Only the calling thread reports
+/// progress and makes snapshots, so no worker waits for a terminal or a disk.
 class RenderThreads {
  public:
   RenderThreads(const RenderContext& context, const Tiles& tiles,
@@ -142,7 +142,7 @@ class RenderThreads {
         if (!stopped_at_) stopped_at_ = Clock::now();
         if (monitor_.abandon && !error_ && Clock::now() - *stopped_at_ > kGrace) {
           splats_.add_to(film_);
-          monitor_.abandon(film_);  // under the lock, so that the film does not change
+          monitor_.abandon(film_);  // under the lock: the film must not change
         }
         return;
       }
@@ -175,8 +175,8 @@ class RenderThreads {
     monitor_.snapshot(film ? &*film : nullptr);
   }
 
-  /// Returns a copy of the film, made tile by tile, so that a thread waits for at most one tile.
-  /// With light paths, copies all tiles at once, as splats belong to the film's current samples.
+  /// Returns a copy of the film. It is made tile by tile, so a thread waits for at most one tile.
+  /// With light paths, all tiles are copied at once: splats must match the samples.
   Film copy_of_film() {
     Film copy;
     copy.width = film_.width;

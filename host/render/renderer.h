@@ -15,14 +15,13 @@ struct RenderJob {
   const Camera& camera;
   const RenderSettings& settings;
   std::optional<CameraLights> lights{};  ///< replace the scene's lights
-  /// An unfinished film to resume, or null. It has sums, and the job's window, settings and first
-  /// sample.
+  /// An unfinished film to resume, or null. It must have sums and this job's window and settings.
   const Film* unfinished = nullptr;
 };
 
 /// Renders an image. Several renders can share a prepared scene, also concurrently. No bit of the
-/// film depends on the intersector or the number of threads, and the film of a window is a part of
-/// the whole film. Resumed films keep their sums until they are complete, so that they can be
+/// film depends on the intersector or the number of threads. The film of a window has the bits of
+/// that part of the whole frame. A resumed film keeps its sums until it is complete, so it can be
 /// resumed again. Rethrows exceptions of intersectors. A scene without lights is black except with
 /// kPrimary: see default_lights.
 [[nodiscard]] Film render(const RenderJob& job, const IntersectorFactory& make_intersector,

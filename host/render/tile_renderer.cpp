@@ -159,9 +159,9 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   return trace_batch(*light_integrator_, keep_going);
 }
 
-/// Traces the rays of one depth and the shadow rays from their hits, the latter in several batches
-/// if there are many lights. Direct light is summed separately from other light, so that the order
-/// of a sample's sums does not depend on the batches.
+/// Traces the rays of one depth and the shadow rays from their hits. Many shadow rays are split
+/// into several batches. Direct light is summed separately from other light, so the order in which
+/// a sample's light is summed does not depend on the batches.
 void TileRenderer::trace_wave(Integrator& integrator) {
   constexpr std::size_t kManyShadowRays = 1 << 17;  // per batch: 14 MB of queries
   const std::size_t rays = batch_.rays.size();

@@ -1,5 +1,5 @@
-// Tile renderer: renders the samples of a tile, batch by batch, on one thread. Splats of its light
-// paths fall anywhere in the film.
+// Tile renderer: renders the samples of a tile, batch by batch, on one thread. The tile's light
+// paths add splats anywhere in the film.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ struct Splat {
   glm::dvec3 light{0.0};
 };
 
-/// Exact sums of splats by pixel of a film's window, each weighted by the density of the pixel's
-/// filter. Sums do not depend on the order of the splats.
+/// Exact sums of splats, one sum per pixel of a film's window. Each splat is weighted by the
+/// density of the pixel's filter. The sums do not depend on the order of the splats.
 class SplatLayer {
  public:
   SplatLayer() = default;  ///< a layer without pixels
@@ -44,22 +44,22 @@ class SplatLayer {
   std::vector<std::array<ExactAccumulator, 3>> sums_;
 };
 
-/// Renders tiles into a film. All rays of one depth form a batch, and all shadow rays of that depth
-/// another. A pixel does not depend on the tile it is in: the light of each path is summed
-/// separately, depth by depth.
+/// Renders tiles into a film. All rays of one depth form a batch, and their shadow rays form
+/// another. The light of each path is summed separately, depth by depth, so a pixel does not depend
+/// on the choice of tiles.
 class TileRenderer {
  public:
   /// `emitter_histories`: by pixel of the film, shared by all tiles; empty: no supersampling.
   TileRenderer(const RenderContext& context, Intersector& intersector, Film& film,
                std::span<HistoryMask> emitter_histories);
 
-  /// Traces the samples of samples_to_trace(). `keep_going` is polled between batches; if it
-  /// returns false, so does this function, and the samples are incomplete.
+  /// Traces the samples of samples_to_trace(). `keep_going` is polled between batches. If it
+  /// returns false, this function returns false and the samples are incomplete.
   [[nodiscard]] bool trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going);
 
   /// Adds the samples of the last trace() to the film.
   void write();
-  /// Returns the splats of the light paths of these samples, anywhere in the frame.
+  /// Returns the splats of the last trace(), anywhere in the frame.
   [[nodiscard]] std::span<const Splat> splats() const { return splats_; }
 
   void add_to(RenderStats& stats) const;
@@ -85,14 +85,14 @@ class TileRenderer {
   // The samples that were traced last, by pixel.
   std::vector<PixelSamples> pixels_;
   std::size_t paths_ = 0;           // number of paths of all pixels
-  std::vector<RayWork> path_work_;  // by path, for all its rays; if counted
+  std::vector<RayWork> path_work_;  // by path, if counted: work of its rays
   bool is_counting_;
   ShadingOutput output_;
   std::vector<glm::vec3> direct_light_;  // by path: light found by shadow rays
   // Emission added by emitter_supersampler_, by pixel.
   std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;
   PixelRect tile_;
-  std::vector<RayWork> pixel_work_;  // by pixel of the tile, for rays without a path
+  std::vector<RayWork> pixel_work_;  // by pixel of the tile: work of rays that belong to no path
   RayBatch batch_;
   std::vector<NearestHit> hits_;  // of the batch
   std::vector<RayWork> work_;     // of the batch, if counted

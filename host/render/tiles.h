@@ -1,4 +1,4 @@
-// Tiles: splits an image into tiles of pixels and passes of samples; and queues this work.
+// Tiles: splits an image into tiles of pixels and passes of samples, and queues the passes.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace raygate {
 
 /// A window split into tiles, numbered row by row, and each pixel's samples split into passes. A
 /// pass over a tile has about the number of samples that an intersector prefers in a batch. Tiles
-/// are smaller if otherwise some threads would have none.
+/// are smaller if there would be fewer tiles than threads.
 struct Tiles {
   PixelRect window;
   int samples, samples_per_pass;
@@ -55,8 +55,8 @@ struct Tiles {
   }
 };
 
-/// The steps of a render, each a pass over a tile. The passes of a tile are sequential; tiles are
-/// independent.
+/// Queue of the steps of a render. A step is a pass over a tile. The passes of a tile are
+/// sequential; tiles are independent.
 class TileQueue {
  public:
   struct Step {
@@ -96,11 +96,11 @@ class TileQueue {
 };
 
 /// Returns whether a camera ray through `tile`, or up to `margin` pixels beside it, may enter a
-/// leaf of the BVH. Conservative: false only if no ray does, including all rounding.
+/// leaf of the BVH. Conservative: false means that no such ray does, however it is rounded.
 [[nodiscard]] bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film,
                                     const PixelRect& tile, double margin);
 
-/// Returns likewise whether a camera ray may enter the box from `low` to `high`.
+/// Returns whether such a ray may enter the box from `low` to `high`. Conservative, too.
 [[nodiscard]] bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
                                const Film& film, const PixelRect& tile, double margin);
 

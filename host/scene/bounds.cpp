@@ -3,7 +3,7 @@
 namespace raygate {
 namespace {
 
-/// Expands the box by the positions of all instances. Skips instances whose bounds are inside it.
+/// Expands `box` by the positions of all instances. Skips instances whose bounds are inside `box`.
 void expand_by_instances(const Scene& scene, Bounds3& box) {
   std::vector<Bounds3> mesh_bounds;
   mesh_bounds.reserve(scene.meshes.size());
@@ -29,8 +29,8 @@ Bounds3 bounds_of(std::span<const glm::vec3> positions) {
   return box;
 }
 
-// The extremes of a coordinate are at corners of the box even with rounding, as each operation of
-// transform_coordinate is monotonic in its operands.
+// The extremes of a coordinate are at corners of the box even with rounding, because each operation
+// of transform_coordinate is monotonic in its operands.
 Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box) {
   Bounds3 result;
   for (int k = 0; k < 3; ++k) {

@@ -20,7 +20,7 @@ struct LensSetting {
   std::optional<Projection> projection;  ///< default: kPerspective
   /// Radius of the lens, at least 0; default: 0 (everything is sharp).
   std::optional<double> aperture;
-  /// Distance of the plane of focus from the lens along the view; default: that of the target.
+  /// Distance of the plane of focus from the lens along the view; default: the target's distance.
   std::optional<double> focus;
 
   /// Returns these settings, overridden by those that are set in `other`.
@@ -45,11 +45,11 @@ struct CameraRequest {
   std::optional<CameraSetting> camera;  ///< none: the scene's camera, or a view of the whole scene
   /// Azimuth and elevation in degrees: a view of the whole scene, even if the scene has a camera.
   std::optional<std::pair<double, double>> angles;
-  std::optional<glm::dvec3> eye, target;  ///< replace those of the camera or view
-  std::optional<glm::dvec3> up;           ///< of the camera, or of the view
-  std::optional<double> fov;              ///< vertical, in degrees
+  std::optional<glm::dvec3> eye, target;  ///< replace eye and target of the camera or view
+  std::optional<glm::dvec3> up;           ///< up direction of the camera or view
+  std::optional<double> fov;              ///< vertical field of view, in degrees
   LensSetting lens;
-  std::optional<bool> ground;  ///< whether to add one; none: if a default view needs it
+  std::optional<bool> ground;  ///< whether to add a ground; unset: only if a default view needs it
 };
 
 /// The names of projections in scene files and on the command line.

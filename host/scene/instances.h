@@ -19,7 +19,7 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   result = ((row[0] * point[0] + row[1] * point[1]) + row[2] * point[2]) + row[3];
 }
 
-/// Returns a mesh position transformed by an instance, as float, as all intersectors use it.
+/// Returns a mesh position transformed by an instance and rounded to float, for all intersectors.
 [[nodiscard]] inline glm::vec3 transform_point(const double (&rows)[3][4],
                                                const glm::vec3& position) {
   const double point[3] = {position.x, position.y, position.z};
@@ -33,7 +33,7 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
 }
 
 /// Returns the unit normal of an instance for a normal of its mesh, or 0 if the transform collapses
-/// it. Uses cofactors: the inverse transpose up to a factor, which exists for singular matrices.
+/// the normal. Uses the cofactor matrix, a multiple of the inverse transpose that always exists.
 [[nodiscard]] inline glm::vec3 transform_normal(const Instance& instance, const glm::vec3& normal) {
   glm::dvec3 row[3];
   for (int k = 0; k < 3; ++k) {
@@ -98,8 +98,8 @@ void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3&
 /// `part.origin`. If `part.materials` is empty, material indices refer to the scene's materials.
 std::uint32_t add_mesh(Scene& scene, Scene&& part);
 
-/// Adds a copy of a mesh with reversed winding (corners C, B, A) and returns its index. Mirrored
-/// instances use it to keep their front sides.
+/// Adds a copy of a mesh with reversed winding (corners C, B, A) and returns the copy's index.
+/// Mirrored instances use the copy to keep their front sides.
 std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh);
 
 /// Adds a part to a scene as a mesh, and instances of this mesh.
@@ -132,9 +132,9 @@ inline constexpr std::uint64_t kFlattenLimit = 4'000'000;
 /// index types. Call this before any loop over the triangles of all instances.
 void require_numbers(const Scene& scene, const std::filesystem::path& file);
 
-/// Flattens instances as `mode` requires. Always flattens emissive instances, as area lights are
-/// lists of triangles. Indices, corners and normals do not depend on `mode`. Throws InputError as
-/// require_numbers() does.
+/// Flattens instances as `mode` requires. Always flattens emissive instances, because area lights
+/// are lists of triangles. Indices, corners and normals do not depend on `mode`. Throws InputError
+/// as require_numbers() does.
 void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::path& file);
 
 }  // namespace raygate

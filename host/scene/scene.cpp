@@ -38,8 +38,8 @@ class Digest {
     word(bits);
   }
 
-  // Only types without padding are hashed by their bytes. 0.0 and -0.0 have different digests, as
-  // they may give different images.
+  // Only types without padding are hashed by their bytes. 0.0 and -0.0 have different digests,
+  // because they may give different images.
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void add(T value) { bytes(&value, sizeof value); }
@@ -65,7 +65,7 @@ class Digest {
   template <class... Values>
   requires(sizeof...(Values) > 1) void add(const Values&... values) { (add(values), ...); }
 
-  // Structured bindings name all members, so a new member does not compile until it is handled.
+  // Structured bindings name all members, so a new member does not compile until add() handles it.
   // Rarely used members are skipped at their defaults, which keeps older digests valid.
   void add(const TextureMapping& m) {
     const auto& [scale, offset, sampling, turn, is_second] = m;

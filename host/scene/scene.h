@@ -33,7 +33,7 @@ struct TextureMapping {
 
 /// A texture of a material, and its mapping.
 struct MaterialMap {
-  std::string file;  ///< path, with the folder of the file that names it; empty: none, or embedded
+  std::string file;  ///< path, with the folder of the MTL file; empty: no texture, or embedded
   TextureMapping mapping;
   std::uint32_t texture = kNoIndex;  ///< index into Scene::textures
 };
@@ -119,7 +119,7 @@ struct Triangle {
 
 /// Triangles that instances share, in the mesh's own coordinates. Their materials emit no light.
 struct Mesh {
-  std::vector<glm::vec3> positions;  ///< each belongs to some triangle
+  std::vector<glm::vec3> positions;  ///< each is a vertex of a triangle
   std::vector<Triangle> triangles;   ///< `vertices` index `positions`; other indices refer to Scene
   std::vector<glm::vec3> colors;     ///< in the format of Scene::colors
 };
@@ -145,7 +145,7 @@ struct SpotCone {
 template <class Position>
 struct PointLightAt {
   Position position{0.0f};
-  glm::dvec3 intensity{0.0};          ///< scene-linear RGB, radiant; of a spot light, on its axis
+  glm::dvec3 intensity{0.0};          ///< radiant, scene-linear RGB; for a spot light, on the axis
   std::optional<SpotCone> spot = {};  ///< none: isotropic
 };
 using PointLight = PointLightAt<glm::vec3>;  ///< position relative to Scene::origin
@@ -210,7 +210,7 @@ void set_last(std::vector<T>& attributes, std::size_t count, const T& value, con
 /// Faces without area have indices, too (see is_left_out).
 struct Scene {
   std::vector<glm::vec3> positions;
-  /// Rests (see rest_of) of the first positions, relative to binary64; 0 for all others.
+  /// Rests (see rest_of) of the first rests.size() positions. All later positions have no rest.
   std::vector<glm::ivec3> rests;
   /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour.
   std::vector<glm::vec3> colors;
@@ -239,7 +239,7 @@ struct Scene {
   /// Up direction that the format defines, or else the usual one: +y or +z.
   glm::dvec3 up{0.0, 1.0, 0.0};
   std::vector<std::filesystem::path> files;  ///< all files read: OBJ, MTL and textures
-  std::vector<std::string> warnings;  ///< "file:line: ..."; about statements first, then faces
+  std::vector<std::string> warnings;  ///< "file:line: ..."; on statements first, then on faces
 
   /// Returns a position in binary64.
   [[nodiscard]] glm::dvec3 vertex(std::uint32_t index) const {
@@ -260,7 +260,7 @@ struct Scene {
 /// Adds a light to a scene whose origin is set. Throws InputError if its position overflows float.
 void add_light(Scene& scene, const WorldPointLight& light, const std::string& file);
 
-/// Adds triangles (0, 1, 2) and (0, 2, 3) of `corners`, the material, and an object of its name.
+/// Adds triangles (0, 1, 2) and (0, 2, 3) of `corners`, the material, and an object of this name.
 void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, const Material& material);
 
 /// Returns a 64-bit digest, as 16 hexadecimal digits, of a scene's geometry, materials, textures,

@@ -30,7 +30,7 @@ inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
 
 /// Adds a square of two triangles slightly below the scene's lowest point, 32 times the scene's
 /// size, with an object and a shadow-catcher material (illum 10) named "ground". `up` is not zero.
-/// If the scene is too large for this, leaves it unchanged.
+/// Leaves the scene unchanged if a corner of the ground would be beyond kMostCoordinate.
 void add_ground(Scene& scene, const glm::dvec3& up);
 
 }  // namespace raygate

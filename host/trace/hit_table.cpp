@@ -115,7 +115,7 @@ std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
     }
     const auto column = static_cast<HitColumn>(at - std::begin(kColumns));
     if (std::ranges::find(columns, column) != columns.end()) fail(name, "each name once");
-    // Which hit is found first depends on the engine, but not whether there is one.
+    // The engine determines which hit is found first, but not whether there is a hit.
     if (hits == Hits::kAny && column != kRay && column != kHit && column != kDoubts) {
       fail(name, "ray, hit or doubts with " + dashes + "hits any");
     }

@@ -23,18 +23,18 @@ enum class HitColumn {
   kObject,    ///< index of the triangle's `o` or `g`, from 0, in the order of the file
   kMaterial,  ///< index of the triangle's material, from 0
   // From kT to kSide: columns that need the corners of the triangle.
-  kT,       ///< P = O + t D
+  kT,       ///< t of the hit point P = origin + t direction
   kPoint,   ///< x, y, z: P in the file's coordinates
-  kUv,      ///< u, v: P = (1 - u - v) A + u B + v C; 0 <= u, 0 <= v, u + v <= 1
+  kUv,      ///< u, v: P = (1 - u - v) A + u B + v C for corners A, B, C; 0 <= u, 0 <= v, u + v <= 1
   kNormal,  ///< nx, ny, nz: (B - A) x (C - A) normalised; not flipped towards the ray
-  kSide,    ///< exact sign of D . N: -1 for the front, 1 for the back
-  kDoubts,  ///< number of the ray's tests that binary32 left in doubt; these are resolved exactly
+  kSide,    ///< exact sign of direction . normal: -1 for the front, 1 for the back
+  kDoubts,  ///< number of the ray's tests that binary32 could not decide; exact arithmetic did
 };
 
 /// Hits to report for each ray.
 enum class Hits {
   kNearest,  ///< one row per ray
-  kAny,      ///< one row per ray: whether there is a hit; the search ends at the first one
+  kAny,      ///< one row per ray: whether there is a hit; the search ends at the first hit found
   kAll,      ///< one row per hit, nearest first, in exact order; none for a miss
 };
 

@@ -22,7 +22,7 @@ struct TraceCounts {
 /// Replaces a block by the next rays, at most this number; returns false at the end.
 using ReadRays = std::function<bool(std::size_t, RayTable&)>;
 
-/// Finds the nearest hit of each ray of a block, or the first one found if `any`. `work` is empty
+/// Finds the nearest hit of each ray of a block, or the first hit found if `any`. `work` is empty
 /// or receives the work of each ray.
 void find_hits(const Bvh& bvh, Intersector& intersector, const RayTable& block, bool any,
                std::span<NearestHit> hits, std::span<RayWork> work = {});

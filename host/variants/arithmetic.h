@@ -40,8 +40,7 @@ struct Arithmetic {
   /// Returns (ax bx + ay by) + az bz, rounded at each step or, if `fused`, once.
   [[nodiscard]] float dot(const glm::vec3& a, const glm::vec3& b) const;
 
-  /// Returns the relative error bound of rounding to nearest: half an ulp. The bound of the other
-  /// directions is twice as large.
+  /// Returns the relative error bound of rounding to nearest: half the bound of other directions.
   [[nodiscard]] double unit_roundoff() const { return std::ldexp(1.0, -digits); }
   [[nodiscard]] int fraction_bits() const { return digits - 1; }
   /// Return the exponents of the smallest and the largest normal number.

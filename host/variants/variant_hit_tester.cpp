@@ -6,25 +6,29 @@
 #include <utility>
 #include <vector>
 
-// The bound of an edge test in a format of u = 2^-digits
+// The bound of an edge test in a format with the unit roundoff u = 2^-digits
 //
-// Let E be the exact edge plane, F the record's words in the format, I the float32 direction with
-// |I_i| < 2, J its rounding to the format, so |J_i| <= 2. |.|_1 is the sum of magnitudes.
+// This bounds |U - I . E|. E is the exact edge plane, F the record's edge words in the format, I a
+// float32 direction with |I_i| < 2, and J is I rounded to the format, so |J_i| <= 2. U is J . F as
+// computed by the unit. |.|_1 is the sum of magnitudes. edge_bound() adds these terms:
+// 1. Record. Rounding to F changes J . E by at most 2 u |F|_1. edge_normal's own error adds less
+//    than 2^-7 u |F|_1 (see polygon_record.cpp).
+// 2. Direction. |J_i - I_i| <= 2 u, so |(J - I) . E| <= 2 u (1 + u) |F|_1. In float32, J = I.
+// 3. Dot product. Each product is rounded at most three times: the error is at most
+//    3 u / (1 - 3 u) |J|.|F| <= 6 u / (1 - 3 u) |F|_1. If rounded once: u |J . F| <= 2 u |F|_1.
+// 4. Words of formats narrower than float32 were first rounded to float32: 2 * 2^-24 (1 + u) |F|_1.
+// 5. Subnormals. Let q be the least positive number. Six words and five operations are off by q / 2
+//    each, times at most 2: 11 q. In formats with less than 8 exponent bits, the largest |F_i| is
+//    at least 1, so this is at most 11 q |F|_1. With 8 exponent bits, 11 q is negligible: the
+//    largest |F_i| is at least 2^-60, and edge_bound() rounds the 2^-7 of step 1 up to 2^-6.
 //
-// 1. Record. |J . F - J . E| <= 2 u |F|_1 for its rounding; edge_normal's own error adds less than
-//    2^-7 u |F|_1 (see polygon_record.cpp).
-// 2. Direction. |(J - I) . E| <= 2 u (1 + u) |F|_1; nothing in float32, where J = I.
-// 3. Dot product. Three roundings for each product at most: 3 u / (1 - 3 u) |J|.|F|, at most
-//    6 u / (1 - 3 u) |F|_1. If the sum is rounded once: u |J . F| <= 2 u |F|_1.
-// 4. If the format is narrower than float32, the record's words were rounded to float32 before:
-//    2 * 2^-24 (1 + u) |F|_1.
-// 5. Subnormals. max |F_i| is at least 1 (formats of few exponents) or far above them (float32's).
-//    Six words and five operations are off by half a quantum q each, times 2 at most: 11 q.
-//
-// The error of t: hit_test_pkg has 48.5 u 2^g for V with J = I. In V's sum the first two products
-// have three roundings and the third has two. With the roundings of N and J these are 5, 5 and 4
-// roundings, so the error of V is at most 2 * 2 * (5 + 5 + 4) = 56 u 2^g. With d and the division,
-// that of t is 59.2 / (1 - r), where r = 56 u is below 2^-5 for 11 digits: under 64 = 2^TErrorUnit.
+// The error of t = d / V. V is N . J as computed, e(x) the exponent of x, g = max e(N_k) - e(V).
+// 1. In V, the first two products are rounded three times, the third twice. With the roundings of N
+//    and J, these are 5, 5 and 4 roundings.
+// 2. |J_k| <= 2 and |N_k| < 2 * 2^g |V|. So V has a relative error of at most
+//    r = 2 * 2 * (5 + 5 + 4) u 2^g = 56 u 2^g. With 11 digits or more, r < 2^-5.
+// 3. d adds 2 u and the division u, so t has a relative error of at most
+//    (56 * 2^g + 3.2) u / (1 - r) < 64 u 2^g, which is 2^(TErrorUnit + g) u.
 
 namespace raygate {
 namespace {
@@ -141,8 +145,7 @@ class VariantHitTester : public PipelineHitTester {
         if (result.kind != BurstResult::Kind::kNearTie) take_as_it_is(distance.t, report, reports);
         continue;
       }
-      // If a doubt is a hit, its P is as accurate as that of a sure hit, provided that V can be a
-      // divisor and d was not clamped.
+      // A doubt's P is as accurate as a sure hit's if V = N . I is a divisor and d is not clamped.
       const float v = variant_.math.dot(record.normal, direction);
       const bool divisible = twin_.is_divisor(record, v) && !std::isinf(record.bounds[0]);
       if (report.is_sure || divisible) {
@@ -211,8 +214,8 @@ std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
 std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                std::unique_ptr<PlaneUnit> unit) {
   if (variant.math == Arithmetic{}) return std::make_unique<SerialHitTester>(std::move(unit));
-  // Scales an error from binary32 to the format, which has the same error in ulps. Errors above 1/8
-  // become infinite, as the bound of V's error does not hold for them.
+  // Scales a relative error from binary32 to the format; in ulps, both are equal. Errors above 1/8
+  // become infinite, because the bound of V's error does not hold for them.
   const auto adapt = [digits = variant.math.digits, host = to_nearest(variant.math)](
                          const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit) {
     hit.point_error = std::ldexp(hit.point_error, 24 - digits);

@@ -15,10 +15,10 @@ using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
 /// its inputs to the format first, as the host does.
 using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 
-/// Converts a record to a variant's format: scales N with d, and each edge, by powers of two if the
-/// format has fewer exponents than binary32, and rounds to nearest. Without `doubts`, the bounds
-/// are 0. Otherwise |unit's U - exact I . E| < bound for any float32 I with components below 2 (the
-/// unit gets I rounded to nearest in the format).
+/// Converts a record to a variant's format and rounds to nearest. If the format has fewer exponents
+/// than binary32, N with d, and each edge, are scaled by powers of two first. Without `doubts`, the
+/// bounds are 0. Otherwise |U - I . E| < bound for the exact edge plane E, any float32 direction I
+/// with components below 2, and the unit's dot product U with I rounded to nearest in the format.
 [[nodiscard]] PolygonRecord variant_record(const Variant& variant, const PolygonRecord& record);
 
 /// Returns t for a record of make_record(), as computed by the variant's unit. For the serial unit,

@@ -21,7 +21,6 @@ using Json = nlohmann::ordered_json;
 ///   flush, quotient_digits (serial only), fused (no hardware)      see Arithmetic
 ///   doubts           whether the host resolves doubts exactly; otherwise there are no bounds
 ///   brought          a folder of modules that replace modules of hw/ (synth/brought.py); "": none
-///
 /// CMake verilates the design of each object that hw/ supports.
 struct Variant {
   enum class Unit : std::uint8_t {
@@ -42,9 +41,8 @@ struct Variant {
   [[nodiscard]] Json row() const;
 };
 
-/// Parses a table of variants. Throws InputError, which names `file` and the variant, for unknown
-/// names, invalid values, and a format whose doubts are to be resolved but that has no proven error
-/// bound (see variant_hit_tester.h).
+/// Parses a table of variants. Throws InputError that names `file` and the variant, for unknown
+/// names, invalid values, and doubts to resolve without a proven error bound.
 [[nodiscard]] std::vector<Variant> parse_variants(std::string_view text, const std::string& file);
 
 /// Returns the contents of variants.json at build time.

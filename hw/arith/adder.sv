@@ -1,9 +1,8 @@
 // Adder of a chosen kind: {carry_o, sum_o} = a_i + b_i + carry_i. Combinational.
 //
-// Every addition of the cores goes through here, so that one parameter changes them all: Arith, see arith_pkg.
-// GroupWidths: the groups of a carry-select adder (see arith_pkg). 0 selects the groups of Arith's kind or, with
-// LookAhead and up to 12 bits (as in exponents), a single group: cutting would not pay. LookAhead: see
-// carry_select_adder.
+// Every addition of significands or exponents uses this module. Arith selects the kind of adder: see arith_pkg.
+// GroupWidths: group widths of a carry-select adder, a list as in arith_pkg; other kinds ignore it. 0 selects one group
+// if LookAhead (see carry_select_adder) is 1 and Width is at most 12, as for exponents, else the groups of Arith.
 module adder #(
   parameter int unsigned Width = 48,
   parameter int unsigned Arith = arith_pkg::Graded,

@@ -1,12 +1,11 @@
 // The kinds of arithmetic, and the group widths of carry-select adders.
 //
-// Arith, a parameter of every arithmetic module, is one of arith_e (declared as a number: tools can override only
-// numbers from outside). Behavioural is the language's own +, * and <, for tools that map these to DSP blocks and carry
-// chains. The others are structural: Booth recoding, carry-save trees and adders of the named kind. All kinds have the
-// same pipeline stages and give the same bits.
+// Arith, a parameter of every arithmetic module, is one of arith_e. (It is declared as a number, because tools can
+// override only numbers from outside.) Behavioural uses the language's own +, * and <, for tools that map these to DSP
+// blocks and carry chains. The other kinds are structural: Booth recoding, carry-save trees and adders of the named
+// kind. All kinds have the same pipeline stages and give the same bits.
 //
-// A list of group widths is a vector of MaxGroups bytes: the lowest byte is the least significant group, a byte of 0
-// ends the list.
+// A list of group widths is a vector of MaxGroups bytes. The least significant group is lowest; a byte of 0 ends it.
 package arith_pkg;
 
   typedef enum int unsigned {
@@ -14,14 +13,14 @@ package arith_pkg;
     Behavioural = 1,
     Ripple      = 2,  // chains of full adders
     Uniform     = 3,  // carry-select adders, groups of one width
-    Prefix      = 4   // Sklansky's parallel-prefix adders, a yardstick
+    Prefix      = 4   // Sklansky's parallel-prefix adders, for comparison
   } arith_e;
 
   localparam int unsigned MaxGroups = 16;
 
-  // Groups of 4 bits, with a narrower one on top if 4 does not divide `width`; wider groups only if MaxGroups groups of
-  // 4 bits are too few. At 48 bits: 12 groups, the 14 full-adder delays of the paper (4 full adders, then 10
-  // multiplexers to the carry that selects the last group's sums).
+  // Returns groups of 4 bits, with a narrower one on top if 4 does not divide `width`. If that needs more than
+  // MaxGroups groups, all groups are wider. At 48 bits: 12 groups, the 14 full-adder delays of the paper (4 full
+  // adders, then 10 multiplexers to the carry that selects the last group's sums).
   function automatic bit [8*MaxGroups-1:0] uniform_groups(int unsigned width);
     int unsigned size, left;
     size = (width <= 4 * MaxGroups) ? 4 : (width + MaxGroups - 1) / MaxGroups;
@@ -33,12 +32,12 @@ package arith_pkg;
     end
   endfunction
 
-  // Groups graded so that, with a full adder and a multiplexer of one delay each, the carry reaches every group just
-  // when the group's own two sums are ready: each group is one bit wider than the one below it, and the widest, on top,
-  // has as many bits as the adder has delays: the least d with d (d + 1) / 2 + 1 >= width (groups of 1, 1, 2 ... d
-  // bits). From the top down the groups take d, d - 1 ... bits, until the rest fits into one more group no wider than
-  // the last. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays of the paper. Valid up to 121 bits; beyond,
-  // MaxGroups can be too few and the adder refuses the list.
+  // Returns graded groups: the carry reaches each group just when the group's own two sums are ready, if a full adder
+  // and a multiplexer have a delay of one each. Each group is one bit wider than the group below it. The top group has
+  // as many bits as the adder has delays: the least d for which groups of 1, 1, 2 ... d bits have `width` bits or more.
+  // From the top down, groups take d, d - 1 ... bits, until the rest fits into one more group no wider than the last.
+  // At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays of the paper. Valid up to 121 bits; beyond that,
+  // MaxGroups can be too few, and carry_select_adder refuses the list.
   function automatic bit [8*MaxGroups-1:0] graded_groups(int unsigned width);
     int unsigned size, left;
     size = 1;
@@ -46,7 +45,7 @@ package arith_pkg;
     left = width;
     graded_groups = '0;
     for (int unsigned k = 0; k < MaxGroups; k++) begin
-      if (left != 0) begin  // the groups placed so far move up by one, this one goes below them
+      if (left != 0) begin  // insert a group below the groups placed so far
         if (left < size) size = left;
         graded_groups = {graded_groups[8*MaxGroups-9:0], 8'(size)};
         left = left - size;
@@ -69,7 +68,7 @@ package arith_pkg;
     end
   endfunction
 
-  // Index of the lowest bit of group k; with k = MaxGroups, the number of bits of all groups.
+  // Returns the index of the lowest bit of group k; for k = MaxGroups, the number of bits of all groups.
   function automatic int unsigned group_low(bit [8*MaxGroups-1:0] widths, int unsigned k);
     group_low = 0;
     for (int unsigned i = 0; i < MaxGroups; i++) begin

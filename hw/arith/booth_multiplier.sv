@@ -1,11 +1,11 @@
 // Unsigned multiplier: product_o = a_i * b_i.
 //
-// Radix-4 Booth recoding of b_i (13 partial products for 24 bits), constants in place of sign extension, a carry-save
-// tree, a carry-propagate adder of 2 * Width bits: the paper's multiplier (section 3.4), for any Width from 2.
+// The paper's multiplier (section 3.4) for any Width from 2: radix-4 Booth recoding of b_i (13 partial products for 24
+// bits), constants in place of sign extension, a carry-save tree, and an adder of 2 * Width bits.
 //
-// ConstantRow: 1 for the paper's tree, with the constants in a row of their own (14 rows, 12 adders in 6 levels); 0
-// puts the constants into free places of the other rows (13 rows, 11 adders in 5 levels). Arith (a structural kind),
-// GroupWidths and LookAhead are those of the last adder: see adder. Combinational.
+// ConstantRow = 1 gives the constants a row of their own, as in the paper (14 rows, 12 adders in 6 levels). 0 puts them
+// into free places of the other rows (13 rows, 11 adders in 5 levels). Arith (a structural kind), GroupWidths and
+// LookAhead configure the adder: see adder. Combinational.
 module booth_multiplier #(
   parameter int unsigned Width = 24,
   parameter int unsigned Arith = arith_pkg::Graded,
@@ -43,8 +43,9 @@ module booth_multiplier #(
 
   // Partial products: row k has weight 4**k
   //
-  // With n the word `negative`, the rows lack n - n * 2**(Width+1). Modulo 2**(2*Width) the second term is 2**(Width+1)
-  // + ~n * 2**(Width+1), where the odd bits of ~n are the constants that replace all sign extensions.
+  // Let n be the word `negative`. The product is the sum of the rows plus n - n * 2**(Width+1): see booth_row. Modulo
+  // 2**(2*Width), -n * 2**(Width+1) is 2**(Width+1) + ~n * 2**(Width+1). The odd bits of ~n are 1: these constants
+  // replace all sign extensions.
 
   logic [2*Width*Rows-1:0] rows;
 
@@ -62,14 +63,14 @@ module booth_multiplier #(
     );
 
     if (ConstantRow) begin : gen_bare
-      if (k == 0) begin : gen_first  // the 1 fits above row 0
+      if (k == 0) begin : gen_first  // 2**(Width+1) fits above row 0
         assign rows[2*Width+:2*Width] = (2 * Width)'({1'b1, row});
       end else begin : gen_next
         assign rows[2*Width*(k+1)+:2*Width] = (2 * Width)'(row) << 2 * k;
       end
     end else begin : gen_full
-      // n fits below the last row and ~n above row 0, except ~n[2]: starting at bit Width + 1, the 1 and ~n[1:0] add up
-      // to 4 - n[0], whose three bits displace ~n[2] to row 1.
+      // n fits below the last row, and ~n above row 0, except ~n[2]: from bit Width + 1, the constant 1 and ~n[1:0] add
+      // up to 4 - n[0], which has three bits, so ~n[2] moves to row 1.
       if (k == 0) begin : gen_first
         assign rows[0+:2*Width] = (2 * Width)'({
           ~negative[2*Digits-1:3], ~negative[0], negative[0], negative[0], row
@@ -84,7 +85,7 @@ module booth_multiplier #(
     end
   end
 
-  if (ConstantRow) begin : gen_constant_row  // first in the tree: it is available first
+  if (ConstantRow) begin : gen_constant_row  // first in the tree: this row arrives first
     assign rows[0+:2*Width] = {~negative[Width-2:0], (Width + 1)'(negative)};
   end
 

@@ -1,6 +1,6 @@
 // Partial product of a radix-4 Booth multiplier, without its sign. Combinational.
-// digit * a_i = row_o + negative_i - negative_i * 2**(Width+1): row_o of a negative digit is the complement of the
-// multiple, without the 1 that completes it and without sign extension.
+// digit * a_i = row_o + negative_i - negative_i * 2**(Width+1). For a negative digit, row_o is the complement of the
+// multiple, without the +1 of two's complement and without sign extension.
 module booth_row #(
   parameter int unsigned Width = 24
 ) (

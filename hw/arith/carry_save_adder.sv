@@ -1,5 +1,5 @@
 // Carry-save adder, a row of full adders: a_i + b_i + c_i = sum_o + carry_o modulo 2**Width.
-// carry_o has its place value already (its bit 0 is 0; the top carry is dropped). Combinational; one full-adder delay.
+// carry_o is shifted left by one: bit 0 is 0, the top carry is dropped. Combinational; one full-adder delay.
 module carry_save_adder #(
   parameter int unsigned Width = 48
 ) (

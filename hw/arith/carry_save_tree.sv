@@ -1,11 +1,11 @@
 // Carry-save tree: rows_i add up to sum_o + carry_o modulo 2**Width.
 //
-// The rows form a queue: each carry-save adder takes the three oldest rows and appends its sum and its carry, until two
-// are left after Rows - 2 adders. So every level turns threes of rows into twos and passes on the rest: 14 rows become
-// 10, 7, 5, 4, 3 and 2, with 12 adders in 6 levels, the paper's tree (section 3.4).
+// The rows form a queue: each carry-save adder takes the three oldest rows and appends its sum and its carry. Two rows
+// are left after Rows - 2 adders. So every level turns each three rows into two and passes on the remainder: 14 rows
+// become 10, 7, 5, 4, 3 and 2, with 12 adders in 6 levels, the paper's tree (section 3.4).
 //
-// Row r of rows_i is rows_i[Width*r +: Width]; the last rows may arrive late. Rows: 2 or more.
-// Combinational; about log(Rows / 2) / log(1.5) full-adder delays.
+// Row r of rows_i is rows_i[Width*r +: Width]; the last rows enter later levels, so they may arrive late. Rows: 2 or
+// more. Combinational; about log(Rows / 2) / log(1.5) full-adder delays.
 module carry_save_tree #(
   parameter int unsigned Width = 48,
   parameter int unsigned Rows  = 14
@@ -17,7 +17,7 @@ module carry_save_tree #(
 
   localparam int unsigned Adders = Rows - 2;
 
-  // Rows feed later rows, never in a loop; Verilator sees this only if each row is a signal of its own (split_var).
+  // Rows feed only later rows. Verilator sees that there is no loop if each row is a signal of its own (split_var).
   logic [Width*(Rows+2*Adders)-1:0] queue  /*verilator split_var*/;
 
   assign queue[Width*Rows-1:0] = rows_i;

@@ -1,6 +1,6 @@
 // Unsigned multiplier of a chosen kind: product_o = a_i * b_i. Combinational; any Width from 2.
 //
-// Arith: Behavioural is `*`; all others are a booth_multiplier, see there for ConstantRow.
+// Arith: Behavioural uses `*`; all other kinds use booth_multiplier. ConstantRow: see booth_multiplier.
 module multiplier #(
   parameter int unsigned Width = 24,
   parameter int unsigned Arith = arith_pkg::Graded,

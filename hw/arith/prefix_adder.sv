@@ -12,8 +12,8 @@ module prefix_adder #(
 );
 
   logic [Width-1:0] half_sum;
-  logic [Width-1:0] generated;  // over all bits from bit 0 (with carry_i) to this one
-  logic [Width-1:0] carries;    // out of each bit
+  logic [Width-1:0] generated;  // by carry_i and the bits from bit 0 to this bit
+  logic [Width-1:0] carries;    // carry out of each bit
 
   assign half_sum = a_i ^ b_i;
 
@@ -22,8 +22,8 @@ module prefix_adder #(
     generated    = a_i & b_i;
     generated[0] = generated[0] | (half_sum[0] & carry_i);
     propagated   = half_sum;
-    // At each level two blocks of size bits become one: generated and propagated at the top of
-    // the lower block go to all bits of the upper one.
+    // At each level, two blocks of `size` bits merge: generated and propagated at the top of the lower block are copied
+    // to all bits of the upper block.
     for (int unsigned size = 1; size < Width; size = size * 2) begin
       for (int unsigned i = 0; i < Width; i++) upper[i] = ((i / size) % 2) == 1;
       below_generated  = (generated << 1) & upper & ~(upper << 1);

@@ -10,7 +10,7 @@ module ripple_carry_adder #(
   output logic             carry_o
 );
 
-  // One carry signal per bit: a vector would feed itself.
+  // One carry signal per bit: tools would report a vector as a combinational loop.
   for (genvar i = 0; i < Width; i++) begin : gen_bit
     logic carry_in, carry_out;
     if (i == 0) begin : gen_first

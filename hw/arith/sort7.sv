@@ -1,6 +1,6 @@
 // Sorts seven unsigned words, the smallest lowest: 16 comparators in six steps.
 // Latency: 2 clocks: registers after the second and the fourth step.
-// Source: Batcher's network for eight words, without one of them.
+// Source: Batcher's network for eight words, with one word left out.
 module sort7 #(
   parameter int unsigned Width = 27
 ) (
@@ -9,7 +9,7 @@ module sort7 #(
   output logic [7*Width-1:0] sorted_o
 );
 
-  // Each word's partner in a comparison, or itself if it rests; a number for each step, last step first, word 6 first
+  // Octal digits: the word that a word is compared with, or itself if it is not compared; step 5 and word 6 first.
   localparam logic [6*21-1:0] Partners = {
     21'o5634120, 21'o6452310, 21'o4563120, 21'o6234501, 21'o3516042, 21'o0452316
   };

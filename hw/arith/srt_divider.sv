@@ -1,18 +1,17 @@
 // Divides significands by radix-4 SRT: floor(2 * x / d * 4**Rows), and whether there is a remainder.
 //
-// Each digit has a row. Digits are -2 .. 2 and residuals in carry-save form, so a row waits only for the carries of its
-// seven-bit estimate. The quotient 2 x / d is in (1, 4): a first digit, 1 .. 4, chosen without an estimate, then Rows
-// digits.
-//
-// dividend_i and divisor_i: normalised, one integer bit which must be 1 (else the outputs are invalid). quotient_o: two
-// integer bits and 2 * Rows fraction bits, truncated. side_o is the side_i of the same division.
+// x is dividend_i and d is divisor_i; both are normalised, with one integer bit that must be 1, else the outputs are
+// invalid. The quotient 2 x / d is in (1, 4). Its first digit, 1 .. 4, comes from srt_first_row. Each of the next Rows
+// digits, -2 .. 2, comes from a srt_row. Residuals are in carry-save form, so carries propagate only in a row's
+// seven-bit estimate of the residual. quotient_o: two integer bits and 2 * Rows fraction bits, truncated. side_i is
+// user data; side_o is the side_i of the same division.
 //
 // Pipelined: registers after the first digit, each row, remainder and quotient. Latency: 0 or, Pipelined, Rows + 3
-// clocks. Throughput: one division a clock. Registers load valid data only: valid_o is valid_i after the latency,
-// and while it is low the outputs of a pipelined divider are invalid. Nothing is reset: valid_o is undefined at first.
+// clocks. Throughput: one division a clock. valid_o is valid_i after the latency. While valid_o is low, the outputs of
+// a pipelined divider are invalid, as registers load valid data only. Nothing is reset: valid_o is undefined at first.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection constants: srt_pkg.
 module srt_divider #(
-  parameter int unsigned Width = 24,  // of both operands
+  parameter int unsigned Width = 24,  // width of both operands
   parameter int unsigned Rows  = 12,
   parameter int unsigned SideWidth = 1,
   parameter int unsigned Arith = arith_pkg::Graded,
@@ -29,7 +28,7 @@ module srt_divider #(
   output logic                 valid_o
 );
 
-  // Fraction bits of the residual: the divisor's, but at least as many as digit selection reads.
+  // Fraction bits of the residual: as many as the divisor has, but not fewer than digit selection reads.
   localparam int unsigned FracWidth = (Width < 6) ? 5 : Width - 1;
   localparam int unsigned ResWidth = 2 + FracWidth;
   localparam int unsigned PadWidth = FracWidth + 1 - Width;
@@ -38,13 +37,13 @@ module srt_divider #(
     $error("srt_divider: expected selection constants that overlap");
   end
 
-  // ---- Rows: residuals, and the digits so far, the first one at the top of the words
+  // ---- Rows: residuals, and the digits so far, the first digit at the top of the words
 
   for (genvar r = 0; r <= Rows; r++) begin : gen_row
     localparam int unsigned DigitsWidth = 2 * (r + 1);
     logic [ResWidth-1:0] divisor, next_sum, next_carry, sum_q, carry_q, divisor_q;
     logic [DigitsWidth-1:0] positives, negatives, positives_q, negatives_q;
-    logic [1:0] positive, negative;  // the digit
+    logic [1:0] positive, negative;  // the row's digit is positive - negative
     logic [SideWidth-1:0] side, side_q;
     logic valid, valid_q;
 
@@ -104,7 +103,7 @@ module srt_divider #(
     );
   end
 
-  // ---- Remainder: if it is negative, the quotient is one unit less. (The remainder is then d - |w|, never zero.)
+  // ---- Remainder w, the last residual: if it is negative, the quotient is a unit less and the remainder is d + w > 0
 
   localparam int unsigned QuotientWidth = 2 * Rows + 2;
   logic [ResWidth-1:0] remainder, unused_divisor;

@@ -1,7 +1,7 @@
-// First row of the radix-4 SRT divider: chooses a digit of 1 .. 4. w = 2 x - digit * d. Combinational.
+// First row of the radix-4 SRT divider: chooses a digit of 1 .. 4. Combinational.
 //
-// Residual and divisor have srt_row's formats; 2 x is in [2, 4), d in [1, 2). Nothing is estimated. digit_o is the
-// digit modulo 4.
+// The first residual is w = 2 x - digit * d, for a dividend x and a divisor d in [1, 2). dividend_doubled_i is 2 x.
+// Residual and divisor have srt_row's formats. digit_o is the digit modulo 4.
 module srt_first_row #(
   parameter int unsigned Width = 25
 ) (
@@ -12,14 +12,14 @@ module srt_first_row #(
   output logic [1:0]       digit_o
 );
 
-  // ---- Choose the digit (see srt_pkg) by the divisor's first sixteenths
+  // ---- Choose the digit (see srt_pkg) by the divisor's first four fraction bits
 
   localparam bit [8*16-1:0] First2 = srt_pkg::first_thresholds(2);
   localparam bit [8*16-1:0] First3 = srt_pkg::first_thresholds(3);
   localparam bit [8*16-1:0] First4 = srt_pkg::first_thresholds(4);
 
   logic [5:0] y;  // 2 x in eighths
-  logic [6:0] sixteenth;  // bit index into the thresholds
+  logic [6:0] sixteenth;  // bit index of the threshold's byte
   logic from_2, from_3, from_4;  // the digit is at least 2, 3, 4
 
   assign y = {1'b0, dividend_doubled_i[Width-1-:5]};
@@ -29,7 +29,7 @@ module srt_first_row #(
   assign from_4 = y >= First4[sixteenth+:6];
   assign digit_o = {from_2 & ~from_4, ~from_2 | (from_3 & ~from_4)};
 
-  // ---- Subtract 0 or d, and 0, 2 d or 4 d; the ones that complete both complements go to free last places
+  // ---- Subtract 0 or d, and 0, 2 d or 4 d, as complements; the +1 of each goes into a free lowest bit
 
   logic [Width-1:0] upper, carry;
 

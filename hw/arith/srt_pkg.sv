@@ -1,28 +1,28 @@
-// Quotient-digit selection of the radix-4 SRT divider: where each digit begins.
+// Quotient-digit selection of the radix-4 SRT divider: the thresholds at which digits begin.
 //
-// With the divisor d in [1, 2) and the shifted residual y = 4 w, |w| <= 2/3 d, digit k of -2 .. 2 keeps |y - k d| <=
-// 2/3 d for y in [(k - 2/3) d, (k + 2/3) d]. Intervals of neighbours overlap by d/3, so the divisor's first bits and an
-// estimate of y, too low by less than two of its units, suffice. The digit is k or more if the estimate is at least
-// m_k, where
-//   m_k >= (k - 2/3) d               for every d with these first bits (k is not chosen too early), and
-//   m_k <= (k - 1 + 2/3) d - 1 unit  (k - 1 is not kept too long).
-// The functions give the smallest such m_k; sound() and first_sound() check the second condition, and srt_divider
-// refuses to elaborate without it.
+// d in [1, 2) is the divisor, w the residual, |w| <= 2/3 d, and y = 4 w. Digit k of -2 .. 2 is valid if the next
+// residual, y - k d, is at most 2/3 d in magnitude again, so for y in [(k - 2/3) d, (k + 2/3) d]. The intervals of
+// k - 1 and k overlap by d/3. So the first bits of d and an estimate of y, too low by less than two of its units,
+// suffice to choose. The digit is k or more if the estimate is at least a threshold m_k. For every d with these first
+// bits,
+//   1. m_k >= (k - 2/3) d, so that y is not below the interval of k if k is chosen;
+//   2. m_k <= (k - 1 + 2/3) d - 1 unit: an estimate below m_k is at most m_k - 1 unit, so y is less than m_k + 1 unit.
+// The functions return the smallest m_k of condition 1. sound() and first_sound() check condition 2 for srt_divider.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3.
 package srt_pkg;
 
-  // The smallest integer that is at least n/d, for d > 0; SystemVerilog cuts off towards zero.
+  // Returns n / d rounded up, for d > 0. (The language's / rounds towards zero.)
   function automatic int ceiling(int n, int d);
     ceiling = (n > 0) ? (n + d - 1) / d : n / d;
   endfunction
 
-  // The largest (k - 2/3) d for d in interval i, in eighths, rounded up.
+  // Returns m_k, in eighths, for d in [1 + i/8, 1 + (i+1)/8): the largest (k - 2/3) d, rounded up.
   function automatic int threshold(int k, int i);
     threshold = ceiling((3 * k - 2) * ((k > 0) ? i + 9 : i + 8), 3);
   endfunction
 
-  // m_k of all intervals, one byte per interval: in eighths, plus 64, so that they compare as unsigned numbers. Byte i
-  // is for a divisor in [1 + i/8, 1 + (i+1)/8).
+  // Returns m_k of all intervals i of d, one byte per interval, interval 0 lowest. A byte is m_k in eighths plus 64, so
+  // that bytes compare as unsigned numbers.
   function automatic bit [8*8-1:0] thresholds(int k);
     for (int i = 0; i < 8; i++) thresholds[8*i+:8] = 8'(threshold(k, i) + 64);
   endfunction
@@ -36,8 +36,8 @@ package srt_pkg;
     end
   endfunction
 
-  // The first digit, 1 .. 4, is chosen by y = 2 x in [2, 4), truncated to eighths, and by sixteenths of the divisor. y
-  // is not an estimate, so the second condition has no unit; nor need it hold above 4, where there is no y.
+  // Returns m_k of the first digit, k = 2 .. 4, in eighths, for d in [1 + i/16, 1 + (i+1)/16) and y = 2 x in [2, 4). y
+  // is known exactly, so condition 2 has no unit. m_k is limited to 32 eighths, as y is below 4.
   function automatic int first_threshold(int k, int i);
     first_threshold = ceiling((3 * k - 2) * (i + 17), 6);
     if (first_threshold > 32) first_threshold = 32;

@@ -1,4 +1,4 @@
-// Shifts a word right; lost_o: a 1 was shifted out. Combinational. An amount of Width or more shifts out all bits.
+// Shifts a word right; lost_o is high if a 1 is lost. Combinational. An amount of Width or more shifts out all bits.
 module sticky_right_shift #(
   parameter int unsigned Width = 26,
   parameter int unsigned AmountWidth = 8

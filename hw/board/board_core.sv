@@ -1,7 +1,7 @@
 // Ray core for a board, with an SDRAM and a host link. Rays, lines and results are words on the link.
 //
-// core_link's header defines the words, sdram_controller's the SDRAM and the limits of clk_i. Memory has no errors: a
-// host must send all lines that a tree names.
+// core_link's header defines the words, sdram_controller's the SDRAM and the limits of clk_i. Reads of memory return no
+// errors, so a host must send all lines that a tree refers to.
 module board_core
   import ray_core_pkg::*;
 #(

@@ -6,11 +6,11 @@
 //   4-7   a ray: any_hit in bit 28; its tag, source_id, skip_id, t_max, and x, y, z of direction and origin follow
 // Other messages are ignored. A result is 8 words: result_t in the lowest bits, zeros above it.
 //
-// The host must send messages 1 and 2 while no ray is in the core; they wait until no line is in flight to the core.
+// The host must send messages 1 and 2 while no ray is in the core; they wait until the core has no read in flight.
 // Words use valid/ready handshakes.
 //
 // A break (break_i, for a clock) ends the host's session: the next word is a message's first, and the rays in the core
-// are aborted. Of their results only the one that is being sent goes out. Words are accepted again when no ray is left.
+// are aborted. Of their results, only one that is being sent goes out. Words are accepted again when no ray is left.
 module core_link
   import ray_core_pkg::*;
 (
@@ -51,13 +51,13 @@ module core_link
 
   // ---- Messages: the first word, then the others from the top of a shift register
 
-  logic outstanding_q;  // a clock late, but without rays in the core it cannot rise
+  logic outstanding_q;  // a clock late; while no ray is in the core, outstanding_i cannot rise
   logic first_q, full_q, done, is_ray;  // first_q: a message's first word is next; full_q: all came
   logic [3:0] kind_q;
   logic [4:0] left_q;  // words of the message still to come
   logic [AddressWidth-1:0] number_q;
   logic [LineWords*32-1:0] words_q;
-  logic [15:0] rays_q;  // in the core
+  logic [15:0] rays_q;  // number of rays in the core
   logic ray_fire, ended, result_load;
 
   assign word_ready_o = ~full_q & ~abort_o;

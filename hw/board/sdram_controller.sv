@@ -1,8 +1,8 @@
 // Memory of lines in one SDRAM of 16 bits: reads and writes of 64 bytes by line number, valid/ready.
 //
 // A line is 32 neighbouring words of a row, and a row has 16 lines. Successive groups of 16 lines are in successive
-// banks. Commands leave from registers. The SDRAM's clock is the inverse of clk_i: the SDRAM takes a command half a
-// clock after it left, and the word of a read (CAS latency 2) is sampled two clocks after its command left. So half a
+// banks. Commands leave from registers. The SDRAM's clock is the inverse of clk_i. So the SDRAM takes a command half a
+// clock after it left, and the word of a read (CAS latency 2) is sampled two clocks after its command left. Half a
 // period of clk_i must cover the SDRAM's access time, 6 ns, and the delays of pads out and back, some 6 ns: 40 MHz.
 // Writes have priority over reads, refreshes over both. A line comes with its request's id and stays until it is taken.
 // A line to be written stays at the port until its last word leaves.
@@ -18,7 +18,7 @@ module sdram_controller
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
-  // lines; only the low 19 bits of a number count
+  // lines; only the low 19 bits of a line's number are used
   input  logic                   read_valid_i,
   output logic                   read_ready_o,
   // verilator lint_off UNUSEDSIGNAL
@@ -47,8 +47,8 @@ module sdram_controller
 
   // ---- Times in clocks, rounded up
 
-  localparam int unsigned Start = 200 * ClockMhz;  // 200 us
-  localparam int unsigned Refresh = 6 * ClockMhz;  // 6 us; at most 7.8 if a line goes first
+  localparam int unsigned Start = 200 * ClockMhz;  // wait after power-up: 200 us
+  localparam int unsigned Refresh = 6 * ClockMhz;  // 6 us; a line before it: below 7.8 us
   localparam int unsigned CycleClocks = (70 * ClockMhz + 999) / 1000;  // tRFC
   localparam int unsigned RowClocks = (20 * ClockMhz + 999) / 1000;  // tRCD and tRP
   localparam int unsigned Words = 32;
@@ -63,7 +63,7 @@ module sdram_controller
   localparam logic [2:0] CommandRefresh = 3'b001;
   localparam logic [2:0] CommandMode = 3'b000;
   localparam logic [12:0] Mode = 13'h020;  // single words, CAS latency 2
-  // For a precharge: of all banks; for a read or a write: with auto-precharge
+  // Address bit 10: a precharge closes all banks; a read or a write closes its row afterwards (auto-precharge)
   localparam logic [12:0] All = 13'h400;
 
   typedef enum logic [2:0] {
@@ -78,7 +78,7 @@ module sdram_controller
   state_e state_q;
   logic [WaitWidth-1:0] wait_q, refresh_q;
   logic go, word_goes, refresh_due_q, writing_q, last_word, idle, read_fire;
-  logic [2:0] command, reading_q;  // reading_q: clocks since a read left
+  logic [2:0] command, reading_q;  // reading_q[n]: a read left n clocks ago
   logic [4:0] word_q;
   logic [5:0] left_q;  // words of a line still to come
   logic [3:0] columns_q;  // the line's place in its row

@@ -19,7 +19,7 @@ module uart_receiver #(
 
   localparam int unsigned CountWidth = $clog2(ClocksPerBit);
 
-  logic [2:0] serial_q;  // two stages against metastability, and the bit before
+  logic [2:0] serial_q;  // two synchroniser stages, and the level a clock before
   logic [CountWidth-1:0] count_q;
   logic [3:0] bit_q;  // 0: no byte; 1 its start bit, ... 10 its stop bit
   logic [1:0] byte_q;

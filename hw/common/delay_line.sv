@@ -1,5 +1,5 @@
 // Delay line: a word, Depth clocks later.
-// Latency: Depth clocks with enable_i; a Depth of 0 is a wire. Without reset: data_o is undefined at first.
+// Latency: Depth clocks with enable_i high. With Depth = 0, data_o is data_i. No reset: data_o is undefined at first.
 module delay_line #(
   parameter int unsigned Width = 32,
   parameter int unsigned Depth = 1

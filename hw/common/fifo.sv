@@ -1,8 +1,8 @@
 // Queue of Depth words, in registers or, with Memory, in a ram.
 //
-// Latency: 1 clock, or 2 with Memory (the first word moves to the memory's output). Throughput: one word a clock.
-// push_i requires a free word, pop_i that valid_o is high. space_o: more than Reserve words are free. If a writer can
-// still push some words after space_o has fallen, Reserve is their number. space_o and valid_o are registers.
+// Latency: 1 clock, or 2 with Memory (the first word moves to the ram's output). Throughput: one word a clock.
+// push_i requires a free word; pop_i requires valid_o. space_o is high while more than Reserve words are free. Reserve
+// is the number of words that a writer may still push after space_o has fallen. space_o and valid_o are registers.
 module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 2,

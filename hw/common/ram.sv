@@ -1,8 +1,8 @@
-// Synchronous memory, one write port and one read port: as block RAM and SRAM macros.
+// Synchronous memory, one write port and one read port: behaves like block RAMs and SRAM macros.
 //
 // Latency: 1 clock; the word stays at data_o until the next read. Throughput: one read and one write a clock. A word
-// read and written at the same edge is read with its old value (read first). The memory has no reset. A word has Parts
-// of equal width, each with its own write_i.
+// read and written at the same edge is read with its old value (read first). The memory has no reset. A word consists
+// of `Parts` parts of equal width; bit p of write_i writes part p, part 0 lowest.
 module ram #(
   parameter int unsigned Width = 32,  // a multiple of Parts
   parameter int unsigned Depth = 64,

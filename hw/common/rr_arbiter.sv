@@ -1,4 +1,4 @@
-// Picks one of Width requests: the first at or above start_i, or else the first of all. Combinational.
+// Picks one of Width requests: the lowest at or above start_i, or else the lowest of all (0 if none). Combinational.
 module rr_arbiter #(
   parameter int unsigned Width = 64,
   localparam int unsigned IndexWidth = $clog2(Width)
@@ -20,7 +20,7 @@ module rr_arbiter #(
   assign picked = among & -among;  // the lowest 1 of `among`
   assign valid_o = requests_i != '0;
 
-  // Marks the indices whose bit b is 1
+  // Returns a mask of the indices whose bit b is 1
   function automatic bit [Width-1:0] numbers(int unsigned b);
     for (int unsigned i = 0; i < Width; i++) numbers[i] = ((i >> b) % 2) == 1;
   endfunction

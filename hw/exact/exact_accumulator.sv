@@ -1,22 +1,22 @@
 // Accumulator of the exact unit: sums of digit products, without rounding.
 //
 // Product scanning (Comba, "Exponentiation cryptosystems on the IBM PC", IBM Systems Journal 29, 1990): column k has
-// all products of a digit i and a digit k - i. Kulisch's long accumulator (Computer Arithmetic and Validity, 2013) is a
-// memory as wide as the exponents' range; this is one register, which holds one column at a time:
+// all products of a digit i and a digit k - i. One register holds the sum of one column at a time. (Kulisch's long
+// accumulator, Computer Arithmetic and Validity, 2013, is as wide as the exponents' range.)
 //
-//   upwards    the low DigitWidth bits of a column's sum are a balanced digit of the result; the rest is carried into
-//              the next column;
-//   downwards  the sum is multiplied by 2**DigitWidth before the next column is added. A column has at most Products
-//              products of at most 2**(2 DigitWidth - 2), so all columns below together change the sum by less than
-//              Products 2**(DigitWidth - 2) (1 + 2**(1 - DigitWidth)) < 2**SureBit: the sign of a larger sum is final.
-//              Any other sum leaves room for another column: |sum| < 2**(2 DigitWidth + log2 Products).
+//   upwards    for a number: the low DigitWidth bits of a column's sum are a balanced digit of the number; the rest is
+//              carried into the next column;
+//   downwards  for a sign: the sum is multiplied by 2**DigitWidth before the next column is added. A column has at most
+//              Products products of magnitude 2**(2 DigitWidth - 2) or less. So all columns below change the sum by
+//              less than Products 2**(DigitWidth - 2) (1 + 2**(1 - DigitWidth)) < 2**SureBit, and the sign of a larger
+//              sum is final. After a smaller sum, the next column's is below 2**(2 DigitWidth + log2 Products).
 //
-// Latency: 2 clocks. Throughput: one term a clock (as two words, sum_i + carry_i modulo 2**Width).
+// Latency: 1 clock. Throughput: one term a clock (as two words, sum_i + carry_i modulo 2**Width).
 module exact_accumulator
   import exact_pkg::*;
 #(
   parameter int unsigned DigitWidth = 48,
-  parameter int unsigned Products = 36,  // in a column, at most
+  parameter int unsigned Products = 36,  // maximum number of products in a column
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned Width = sum_width(DigitWidth, Products)
 ) (
@@ -39,7 +39,7 @@ module exact_accumulator
 
   assign stays = first_i ? '0 : !opens_i ? sum_q
                : down_i ? sum_q << DigitWidth : Width'($signed(sum_q) >>> DigitWidth);
-  // The digit is balanced: if it is negative, the columns above get one more.
+  // The digit is signed (balanced): if it is negative, the carry into the next column is one more.
   assign round = opens_i & ~first_i & ~down_i & sum_q[DigitWidth-1];
 
   carry_save_adder #(

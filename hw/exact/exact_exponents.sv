@@ -1,9 +1,10 @@
 // Units and digits of a request's numbers: as few digits as the exponents of its floats need.
 //
-// The unit of coordinates and of their differences, b, is the smallest exponent of coordinates that are not 0; the
-// direction has its own, c. t = D / S of a hit, with D in units of b**3 and S in units of b**2 c, is below the limit if
-// D times b is below S times (limit c). These two factors, `one` and `limit`, are in units of the smaller of their
-// exponents. D, S and the other numbers stay below exact_pkg's bound: see digits_of.
+// The unit b of coordinates and of their differences comes from the smallest exponent of all non-zero coordinates, the
+// unit c of the direction from the smallest exponent of its non-zero components. A hit is at t = D / S (exact_unit),
+// with D in units of b**3 and S in units of b**2 c. So t is below a limit if D * b is below S * (limit * c). The
+// factors `one` (b) and `limit` (limit * c) are in units of the smaller of their exponents. All numbers fit: see
+// digits_of.
 //
 // Latency: 2 to 4 clocks (2 for the exponents, 3 for their digits, 4 for the rest).
 module exact_exponents
@@ -31,11 +32,11 @@ module exact_exponents
 
   localparam int unsigned Least = digits_of(0, Significand, DigitWidth);
   localparam int unsigned PairDigits = digits_of(Gap, Significand, DigitWidth);
-  // The exponent of a float whose last bit is 1.
+  // Exponent field of a float whose last bit has the value 1.
   localparam int unsigned Unit = (1 << (ExpWidth - 1)) - 1 + FracWidth;
   localparam int unsigned Vectors = PlaceLimit / 3;
 
-  // digits_of for numbers of `bits` bits and a `spread` that is a signal.
+  // Returns digits_of(spread, bits, DigitWidth), for a `spread` that is a signal.
   function automatic logic [CountWidth-1:0] count(logic [ShiftWidth-1:0] spread, int unsigned bits);
     count = CountWidth'(Least);
     for (int unsigned k = Least; k < PairDigits; k++) begin
@@ -43,7 +44,7 @@ module exact_exponents
     end
   endfunction
 
-  // ---- The least and the largest exponent of each vector, without its zeros
+  // ---- The least and the largest exponent of each vector's non-zero components
 
   logic [ExpWidth-1:0] lows_d[Vectors], highs_d[Vectors], lows_q[Vectors], highs_q[Vectors];
 
@@ -78,7 +79,7 @@ module exact_exponents
   localparam int unsigned Direction = PlaceDirection / 3;
   localparam int unsigned Other = PlaceOther / 3;
 
-  logic [ExpWidth-1:0] lows[2*Vectors], highs[2*Vectors];  // trees: 2 n, 2 n + 1 are below n
+  logic [ExpWidth-1:0] lows[2*Vectors], highs[2*Vectors];  // trees: n's children are 2 n, 2 n + 1
   logic [ExpWidth-1:0] coordinate_high_q, direction_high_q;
 
   always_comb begin
@@ -98,7 +99,7 @@ module exact_exponents
   end
 
   always_ff @(posedge clk_i) begin
-    // If all are zero, any unit will do.
+    // If all coordinates are zero, any unit will do.
     coordinate_exponent_o <= (highs[1] == '0) ? ExpWidth'(1) : lows[1];
     coordinate_high_q     <= (highs[1] == '0) ? ExpWidth'(1) : highs[1];
     direction_exponent_o  <= lows_q[Direction];
@@ -109,7 +110,7 @@ module exact_exponents
         ShiftWidth'(direction_high_q) - ShiftWidth'(direction_exponent_o), Significand);
   end
 
-  // ---- Exponents and digits of `one` (b) and `limit` (c times the limit's unit)
+  // ---- Exponents and digits of `one` (b) and `limit` (the limit times c)
 
   logic [ShiftWidth:0] one_exponent, limit_exponent;
   logic [ShiftWidth-1:0] gap_q;

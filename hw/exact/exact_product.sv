@@ -1,9 +1,9 @@
 // Product of two digits for the accumulator: a_i b_i, or its negative, as two words: sum_o + carry_o modulo 2**Width.
 //
-// a_i and b_i are in two's complement. Structural arithmetic is radix-4 Booth recoding of b_i (without a digit above
-// the sign, which only an unsigned operand needs) and a carry-save tree; the accumulator has the only adder. A row of
-// DigitWidth + 1 bits in two's complement equals the row with its top bit inverted, less 2**DigitWidth. Together these
-// corrections are a constant, which shares a row with the ones that complete negative rows. Combinational.
+// a_i and b_i are in two's complement. Structural kinds use radix-4 Booth recoding of b_i (without the top digit, which
+// only an unsigned b_i needs) and a carry-save tree; the adder is in exact_accumulator. A row of DigitWidth + 1 bits in
+// two's complement equals the row with its top bit inverted, less 2**DigitWidth. These corrections add up to a
+// constant. It shares a row of the tree with the +1 of each complemented row. Combinational.
 module exact_product #(
   parameter int unsigned DigitWidth = 48,
   parameter int unsigned Width = 103,

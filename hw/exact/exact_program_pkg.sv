@@ -1,10 +1,10 @@
 // Micro-programs of the exact unit: the polynomials whose signs it takes, instruction by instruction.
 //
 // An instruction computes a number from floats or earlier numbers, or the sign of a number. A digit cannot be read
-// before its last product has passed the pipeline (sim/checks/exact_checks.sv checks that), so independent vectors
-// alternate; where that is not enough, an instruction has a fence: it waits until all earlier results are written.
+// before its last product has passed the pipeline (sim/checks/exact_checks.sv checks this). So instructions for
+// independent vectors alternate, or an instruction has a fence: it waits until all earlier results are written.
 //
-// Limit and Order compare hits; they follow Hit if a request asks for both.
+// Limit and Order compare hits; one of the two follows Hit if a request asks for hit and order.
 package exact_program_pkg;
 
   // Programs are indexed from left to right; no top module uses everything.
@@ -14,10 +14,10 @@ package exact_program_pkg;
 
   import exact_pkg::*;
 
-  typedef instruction_t [0:2] vector_t;  // of x, y, z
-  typedef logic [NumberWidth-1:0] place_t;  // of a float in a request, or of a number in memory
+  typedef instruction_t [0:2] vector_t;  // instructions for x, y, z
+  typedef logic [NumberWidth-1:0] place_t;  // a float in a request, or a number in memory
 
-  // ---- Places of floats and numbers; a vector's place is its x's
+  // ---- Places of floats and numbers; a vector's place is that of its x
 
   localparam place_t Origin = place_t'(PlaceOrigin);
   localparam place_t Triangle = place_t'(PlaceTriangle);  // its corners A, B, C
@@ -30,28 +30,28 @@ package exact_program_pkg;
   localparam place_t C = 5'd9;
   localparam place_t N = place_t'(Normal);
   localparam place_t M = place_t'(SecondNormal);
-  localparam place_t T = place_t'(Distance);  // t = T / S
+  localparam place_t T = place_t'(Distance);  // a hit's t is T / S, another hit's OtherT / OtherS
   localparam place_t S = T + 5'd1;
   localparam place_t OtherT = place_t'(OtherDistance);
   localparam place_t OtherS = OtherT + 5'd1;
 
   // ---- Instructions
 
-  // Makes the number `result`: x0 y0, minus or plus the other products as its kind says (x0 - y0 for floats).
+  // Returns an instruction for the number `result`: x0 y0 plus or minus more products, see kind_e (floats: x0 - y0).
   function automatic instruction_t number(kind_e kind, place_t result, place_t x0, place_t y0,
                                           place_t x1 = '0, place_t y1 = '0, place_t x2 = '0,
                                           place_t y2 = '0);
     number = '{kind, 1'b0, 1'b0, 1'b0, result, y2, x2, y1, x1, y0, x0};
   endfunction
 
-  // A vector of differences of floats.
+  // Returns instructions for the three components of a difference of vectors of floats.
   function automatic vector_t difference(place_t result, place_t minuend, place_t subtrahend);
     for (logic [4:0] k = 0; k < 3; k++) begin
       difference[k] = number(KindCoordinate, result + k, minuend + k, subtrahend + k);
     end
   endfunction
 
-  // The direction as numbers.
+  // Returns instructions that make numbers of the direction's floats.
   function automatic vector_t direction();
     for (logic [4:0] k = 0; k < 3; k++) begin
       direction[k] = number(KindRay, I + k, place_t'(PlaceDirection) + k, Zero);
@@ -75,14 +75,14 @@ package exact_program_pkg;
     dot_product = number(kind, result, x, y, x + 5'd1, y + 5'd1, x + 5'd2, y + 5'd2);
   endfunction
 
-  // Takes the sign of x . y; `last`: it ends the program.
+  // Returns an instruction that takes the sign of x . y; `last`: it ends the program.
   function automatic instruction_t sign(kind_e kind, place_t x, place_t y, logic last = 1'b0);
     sign = dot_product(kind, '0, x, y);
     sign.decide = 1'b1;
     sign.last = last;
   endfunction
 
-  // Takes the sign of (t - t') S S', with t = T / S.
+  // Returns an instruction that takes the sign of (t - t') S S', with t = T / S and t' = OtherT / OtherS = T' / S'.
   function automatic instruction_t compare();
     compare = number(KindCompare, '0, T, OtherS, S, OtherT);
     compare.decide = 1'b1;
@@ -98,7 +98,7 @@ package exact_program_pkg;
 
   // verilog_format: off
   localparam instruction_t [0:Length-1] Program = {
-    // Hit: the sides on which the ray passes the edges; here A, B and C are relative to the origin
+    // Hit: on which sides of the edges the ray passes; here A, B and C are relative to the origin
     difference(B, Triangle + 5'd3, Origin),
     difference(C, Triangle + 5'd6, Origin),
     difference(A, Triangle, Origin),
@@ -110,7 +110,7 @@ package exact_program_pkg;
     cross_product(N, A, B),
     sign(KindEdge, I, M),
     sign(KindEdge, I, N, 1'b1),
-    // Limit: t = A . N / I . N with N = (B - A) x (C - A), against a limit / 1
+    // Limit: t = A . N / I . N with N = (B - A) x (C - A), against limit / 1; here B and C are B - A and C - A
     difference(B, Triangle + 5'd3, Triangle),
     difference(C, Triangle + 5'd6, Triangle),
     difference(A, Triangle, Origin),
@@ -121,7 +121,7 @@ package exact_program_pkg;
     dot_product(KindPlane, T, A, N),
     dot_product(KindEdge, S, I, N),
     compare(),
-    // Order: t against t' of the other triangle
+    // Order: t against t' of the other triangle's hit
     difference(B, Triangle + 5'd3, Triangle),
     difference(C, Triangle + 5'd6, Triangle),
     difference(A, Triangle, Origin),

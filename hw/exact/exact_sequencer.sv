@@ -1,17 +1,17 @@
 // Sequencer of the exact unit: steps of programs, a product a clock.
 //
-// The columns of a number go upwards, from column 0 to its last digit; those of a sign downwards, from the highest. A
-// column has all its pairs of digits, and for each pair every term. An instruction with a fence begins when written_i
-// is high. stop_i: the instruction at stop_address_i has its sign; if its steps are still being issued, the next
-// instruction follows. After Hit, the program goes on with the comparison before it is known whether there is a hit;
-// abort_i ends it.
+// For a number, columns are computed upwards, from column 0 to the last digit; for a sign downwards, from the highest.
+// A column has one step for each pair of its digits and each term (product) of the instruction. An instruction with a
+// fence begins when written_i is high. stop_i: the sign of the instruction at stop_address_i is known. If the steps of
+// this instruction are still being issued, the next instruction follows at once. After Hit, the comparison is issued
+// before it is known whether there is a hit; abort_i ends the program.
 //
 // start_i: the counts of digits are valid, except pair_digits_i, which is valid a clock later. The first step is issued
 // in the clock after start_i.
 module exact_sequencer
   import exact_pkg::*;
 #(
-  parameter int unsigned Digits = 6,  // of a difference, at most
+  parameter int unsigned Digits = 6,  // maximum number of digits of a difference
   localparam int unsigned AddressWidth = $clog2(memory_depth(Digits))
 ) (
   input  logic                    clk_i,
@@ -28,7 +28,7 @@ module exact_sequencer
   input  logic                    written_i,
   input  logic                    stop_i,
   input  logic [6:0]              stop_address_i,
-  output logic                    stopped_o,  // all steps in flight are of that instruction
+  output logic                    stopped_o,  // stop_i, and all steps in flight are superfluous
   input  logic                    abort_i,
   // a step
   output logic                    valid_o,
@@ -42,7 +42,7 @@ module exact_sequencer
   output logic [AddressWidth-1:0] result_address_o
 );
 
-  // ---- Fetch: the next instruction, and its last digits
+  // ---- Fetch: the next instruction, and the numbers of the last digits of x, y and the result
 
   instruction_t fetched, instruction_q;
   logic [6:0] compares, next_q, address_q;
@@ -111,7 +111,7 @@ module exact_sequencer
     end
   end
 
-  // ---- Steps: the term, digit i of x and digit j of y, and the first i and j of the column
+  // ---- Steps: the term, digit i of x and digit j of y; from_i and from_j are the first i and j of the column
 
   logic [1:0] term_q, terms_last;
   logic [CountWidth-1:0] i_q, j_q, from_i_q, from_j_q, from_i_d, from_j_d, column_q;

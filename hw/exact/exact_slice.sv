@@ -1,6 +1,5 @@
 // A digit of a shifted significand: digit_o is digit digit_i of significand_i * 2**shift_i, in digits of DigitWidth
-// bits. Combinational.
-// shift_i is at most MaxShift; digit_i may be any number.
+// bits. Combinational. shift_i is at most MaxShift; digit_i may be any number.
 module exact_slice
   import exact_pkg::*;
 #(

@@ -1,20 +1,20 @@
 // Exact unit: decides hits, limits and which of two hits is nearer.
 //
 // Decides as host/exact does, ties included, from the floats (binary32 or another format) of the ray and the corners.
-// With A, B, C the corners minus the origin and N = (B - A) x (C - A):
+// A, B, C are the corners minus the origin, I is the direction and N = (B - A) x (C - A):
 //
-//   hit    A . (B x C) is not 0, and I . (B x C), I . (C x A), I . (A x B) have its sign. One that is 0 has the sign of
-//          the first non-zero component of its cross product (the ray tilts towards +x, less towards +y, then +z)
-//   order  the sign of t - limit or t - t', with t = D / S, D = A . N, S = I . N: that of (D S' - D' S) D D'
+//   hit    A . (B x C) is not 0, and I . (B x C), I . (C x A), I . (A x B) have its sign. A product I . M that is 0
+//          takes the sign of M's first non-zero component (as if the ray tilted towards +x, less towards +y, then +z)
+//   order  the sign of t - limit or t - t'. For hits, t = D / S > 0 with D = A . N and S = I . N, and t' = D' / S' (or
+//          limit / 1). So the order is the sign of (D S' - D' S) D D'
 //
 // All are sums of products of floats, so whole numbers in units that the exponents give (exact_exponents), summed
-// without rounding. exact_program_pkg has the programs. Latency: up to 161 clocks, at worst 3,686 (with digits of 48
-// bits; at exponents at most 21 apart a difference is one digit: hit 72, limit 56, order 98, hit and order 161).
+// without rounding. exact_program_pkg has the programs. Latency: up to 161 clocks, at worst 3,686 (binary32, digits of
+// 48 bits). 161 is for exponents at most 21 apart (hit 72, limit 56, order 98, hit and order 161).
 //
 // Coordinates are of magnitude 2**126 at most, the direction is not 0, the limit is positive; all are finite. hit_i and
-// against_i select the questions. hit_o is high if no hit was asked for; order_o is 0 for a miss or if no order was
-// asked for. For other than hits, the order is just the formula's sign. One request at a time:
-// ready_o is high between an answer and the next request.
+// against_i select the questions. hit_o is high if hit_i was low. order_o is 0 for a miss or if no order was asked for;
+// with hit_i low, misses are not detected. ready_o is high between an answer and the next request.
 module exact_unit
   import exact_pkg::*;
 #(
@@ -30,7 +30,7 @@ module exact_unit
   output logic                    ready_o,
   input  logic                    hit_i,
   input  logic [1:0]              against_i,  // against_e
-  input  logic [Floats*Width-1:0] floats_i,  // exact_pkg's places
+  input  logic [Floats*Width-1:0] floats_i,  // words: places of exact_pkg
   output logic                    valid_o,
   input  logic                    ready_i,
   output logic                    hit_o,
@@ -43,11 +43,11 @@ module exact_unit
   localparam int unsigned AddressWidth = $clog2(Depth);
   localparam int unsigned MaxShift = largest_gap(ExpWidth, Significand);
   localparam int unsigned ShiftWidth = $clog2(MaxShift + 1);
-  localparam int unsigned Products = 6 * Digits;  // in a column, at most
+  localparam int unsigned Products = 6 * Digits;  // maximum number in a column
   localparam int unsigned SumWidth = sum_width(DigitWidth, Products);
   localparam int unsigned Stages = 4;
 
-  // ---- Request: the words, then their exponents
+  // ---- Request: keeps the words, and waits for their exponents
 
   logic done, asks_hit_q;
   logic [1:0] against_q;
@@ -96,7 +96,7 @@ module exact_unit
 
   typedef struct packed {
     step_t step;
-    logic [6:0] address;  // of the step's instruction
+    logic [6:0] address;  // program address of the step's instruction
     logic [AddressWidth-1:0] result;  // address of the digit that the step completes
   } stage_t;
 
@@ -147,7 +147,7 @@ module exact_unit
     end
   endfunction
 
-  logic [1:0][Width-1:0] words_q;  // of x ([0]) and y
+  logic [1:0][Width-1:0] words_q;  // floats of x ([0]) and y
   logic one_q, limit_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -162,8 +162,7 @@ module exact_unit
     limit_q     <= 32'(x_place) == PlaceLimit;
   end
 
-  // ---- Stage 1: digits of numbers, from memory, or of floats. Only x can be the limit or 1, which have their own
-  // shifts
+  // ---- Stage 1: digits of numbers, from memory, or of floats. Only x can be the limit or 1; each has its own shift
 
   logic write, loads;
   logic [DigitWidth-1:0] digit;
@@ -275,7 +274,7 @@ module exact_unit
     .sure_o    (sure)
   );
 
-  // ---- Stage 4: a digit is written; the sign of a number is that of its highest digit
+  // ---- Stage 4: a digit is written; a number has the sign of its highest non-zero digit
 
   logic [Numbers-1:0] negative_q, nonzero_q;
 
@@ -301,7 +300,7 @@ module exact_unit
     if (valid_q[4]) decided_q <= was_decided | stop;
   end
 
-  // For an edge that the ray meets, the sign of the first non-zero component of the edge's normal.
+  // For an edge that the ray meets: the sign of the first non-zero component of the edge's normal.
   always_comb begin
     tie_sign = '0;
     for (int unsigned k = 3; k > 0; k--) begin

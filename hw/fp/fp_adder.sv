@@ -6,12 +6,12 @@
 //         exact, so only a leading-zero count and a left shift
 //
 // Pipelined: registers between ordering and adding, between adding and rounding, and after the result. Latency: 0 or,
-// Pipelined, 3 clocks. Throughput: one operation a clock. The rounding mode is used in several stages and should stay
-// the same.
+// Pipelined, 3 clocks. Throughput: one operation a clock. Several stages use rounding_mode_i, so it must not change
+// while operations are in flight.
 //
 // Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when rounding down, unless both
 // addends are zeros of one sign. Infinity minus infinity is invalid. A subnormal sum is exact, so underflow is never
-// raised and tininess_after_i changes nothing.
+// raised and tininess_after_i has no effect.
 // Source: IEEE 754-2019, clauses 5.4.1 and 6.3; the two paths: Farmwald, Stanford 1981.
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
@@ -30,7 +30,7 @@ module fp_adder #(
 );
 
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
-  localparam int unsigned NearWidth = FracWidth + 2;  // a bit more, if exponents differ by one
+  localparam int unsigned NearWidth = FracWidth + 2;  // one more, for exponents one apart
   localparam int unsigned FarWidth = FracWidth + 3;  // two integer bits, fraction, guard
   localparam int unsigned CountWidth = $clog2(NearWidth);
 
@@ -52,7 +52,7 @@ module fp_adder #(
     .class_o({b_class, a_class})
   );
   assign b_sign = b_sign_packed ^ subtract_i;
-  assign subtract = a_sign ^ b_sign;  // of the magnitudes
+  assign subtract = a_sign ^ b_sign;  // magnitudes are subtracted
 
   // ---- Order by magnitude, so that no difference is negative
 
@@ -69,7 +69,7 @@ module fp_adder #(
 
   // ---- Distance of the exponents: both differences, in parallel with the ordering
 
-  logic [1:0][ExpWidth-1:0] exps, differences;  // of a and b; a - b and b - a
+  logic [1:0][ExpWidth-1:0] exps, differences;  // [0]: a, a - b; [1]: b, b - a
   logic [ExpWidth-1:0] distance;
 
   assign exps = {b_exp, a_exp};
@@ -120,8 +120,8 @@ module fp_adder #(
              big_sig_1, small_sig_1})
   );
 
-  // ---- Far path: align. Subtraction uses operands shifted left by one and an exponent less by one. So a difference is
-  // in [1, 4), like a sum, unless the near path computes it.
+  // ---- Far path: align. For a subtraction, the operands are shifted left by one and the exponent is one less. So a
+  // difference is in [1, 4), like a sum, unless the near path computes it.
 
   logic [FarWidth-1:0] far_big, far_small, far_aligned;
   logic far_sticky;
@@ -138,8 +138,8 @@ module fp_adder #(
     .lost_o(far_sticky)
   );
 
-  // ---- Far path: add. If bits of the subtrahend are lost, the 1 that completes its complement is left out: the
-  // difference is then too low by less than a unit in the last place, which the sticky bit makes up for.
+  // ---- Far path: add. If bits of the subtrahend are lost, the +1 of its two's complement is left out. far_sum is then
+  // below the exact difference by less than a unit in its last place; the sticky bit represents this rest.
 
   logic [FarWidth-1:0] far_sum;
 
@@ -154,13 +154,13 @@ module fp_adder #(
     .carry_o()
   );
 
-  // ---- Far path: exponent for the rounder, minus one for a sum and minus two for a difference
+  // ---- Far path: exponent for fp_round, big_exp - 1 for a sum and big_exp - 2 for a difference
 
   logic [ExpWidth-1:0] far_exp;
 
   assign far_exp = big_exp_1 - (subtract_1 ? ExpWidth'(2) : ExpWidth'(1));
 
-  // ---- Near path: subtract; the exponents' lowest bits give their distance, 0 or 1
+  // ---- Near path: subtract; exponents differ by 0 or 1, so their lowest bits suffice to align
 
   logic [NearWidth-1:0] near_small, near_difference;
 
@@ -177,7 +177,7 @@ module fp_adder #(
     .carry_o()
   );
 
-  // A 1 at the place where the exponent becomes the smallest one, for normalising.
+  // A 1 at the bit that becomes the integer bit if the shift lowers the exponent to the smallest one.
   logic [NearWidth-1:0] near_mark;
   logic near;
 
@@ -204,8 +204,8 @@ module fp_adder #(
              near_difference_2, near_mark_2})
   );
 
-  // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one: the result is then
-  // subnormal, or zero, with an exponent field of 0. The count is 0 if this path is not taken.
+  // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one. The result is then
+  // subnormal or zero, with an exponent field of 0. The count is 0 if this path is not taken.
 
   logic [NearWidth-1:0] near_normal;
   logic [CountWidth-1:0] near_count;
@@ -274,7 +274,7 @@ module fp_adder #(
   delay_line #(
     .Width($bits(flags)),
     .Depth(32'(Pipelined))
-  ) u_flags (  // separate: Verilator drops them where they are unused
+  ) u_flags (  // separate, so that Verilator can drop unused flags
     .clk_i,
     .enable_i(1'b1),
     .data_i(flags),

@@ -1,8 +1,8 @@
 // Floating-point compare: equal, less, unordered.
 //
-// NaN is unordered with everything, itself included: equal_o = less_o = 0. -0 equals +0. The only flag is invalid: with
-// signaling_i = 1 any NaN raises it, as for < and <=, else only a signalling NaN, as for ==. (a <= b is less_o |
-// equal_o, a > b is less_o with the operands exchanged.)
+// NaN is unordered with everything, itself included: equal_o = less_o = 0. -0 equals +0. The only flag is invalid. With
+// signaling_i = 1 any NaN raises it, as < and <= require; with 0 only a signalling NaN does, as == requires. (a <= b is
+// less_o | equal_o; for a > b, exchange the operands and use less_o.)
 //
 // Combinational; takes every bit pattern. Source: IEEE 754-2019, clause 5.11.
 module fp_compare #(
@@ -18,7 +18,7 @@ module fp_compare #(
   output fp_pkg::flags_t              flags_o
 );
 
-  localparam int unsigned MagWidth = ExpWidth + FracWidth;  // of the word without its sign
+  localparam int unsigned MagWidth = ExpWidth + FracWidth;  // width of a word without its sign
   localparam logic [MagWidth-1:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
 
   logic a_sign, b_sign, a_nan, b_nan, any_signaling, both_zero;
@@ -33,7 +33,7 @@ module fp_compare #(
   assign any_signaling = (a_nan & ~a_mag[FracWidth-1]) | (b_nan & ~b_mag[FracWidth-1]);
   assign both_zero = (a_mag | b_mag) == '0;
 
-  // ---- Magnitudes: packed words have the order of their values
+  // ---- Magnitudes: as integers, packed words have the order of their values
 
   logic mag_less, mag_equal;
 

@@ -1,12 +1,12 @@
 // Floating-point multiply: a_i * b_i.
 //
-// Significands are multiplied without normalising: a subnormal one has leading zeros. The shift of the product is found
-// from the operands, in parallel with the multiplication: to the left by the leading zeros, but not beyond the smallest
-// exponent, or to the right for a subnormal result. One shift and the shared rounder follow the product.
+// Significands are multiplied without normalising: a subnormal one has leading zeros. The product's shift is computed
+// from the operands, in parallel with the multiplication. It is to the left by the leading zeros, but not beyond the
+// smallest exponent, or to the right for a subnormal result. One shift and fp_round follow the product.
 //
 // Arith: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
 // Pipelined: registers before the product, after it, and after the result. Latency: 0 or, Pipelined, 3 clocks.
-// Throughput: one operation a clock. The last stage uses the rounding mode.
+// Throughput: one operation a clock. The last stage uses rounding_mode_i: keep it while operations are in flight.
 //
 // Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the operands' signs, also that of zeros
 // and infinities. Zero times infinity is invalid.
@@ -49,8 +49,8 @@ module fp_multiplier #(
     .class_o({b_class, a_class})
   );
 
-  // ---- Add the exponents: the product's biased exponent minus one, as the rounder expects it, is a_exp + b_exp - bias
-  // - 1 = a_exp + b_exp - 2**(ExpWidth-1), which keeps the low bits.
+  // ---- Add the exponents: fp_round expects the product's biased exponent less one, a_exp + b_exp - bias - 1 = a_exp +
+  // b_exp - 2**(ExpWidth-1). Subtracting 2**(ExpWidth-1) keeps the low bits.
 
   logic [ExpWidth:0] exp_sum, exp;
   logic exp_negative;
@@ -114,8 +114,8 @@ module fp_multiplier #(
     .product_o(product)
   );
 
-  // ---- Left shift: the leading zeros of the subnormal operand, if there is one (the product of two
-  // is far below the smallest subnormal). A mark stops the count where the exponent is the smallest.
+  // ---- Left shift: the leading zeros of the subnormal operand, if there is one (the product of two subnormals is far
+  // below the smallest subnormal). The mark stops the count where the exponent becomes the smallest one.
 
   logic [SigWidth-1:0] may_be_subnormal, mark;
   logic [LeftWidth-1:0] left;
@@ -162,7 +162,7 @@ module fp_multiplier #(
 
   logic [ProdWidth-2:0] shifted;
   logic lost;
-  logic [ProdWidth:0] placed;  // the lowest bit: a 1 was lost to the right
+  logic [ProdWidth:0] placed;  // lowest bit: a 1 was shifted out to the right
 
   sticky_right_shift #(
     .Width(ProdWidth - 1),
@@ -227,7 +227,7 @@ module fp_multiplier #(
   delay_line #(
     .Width($bits(flags)),
     .Depth(32'(Pipelined))
-  ) u_flags (  // separate: Verilator drops them where they are unused
+  ) u_flags (  // separate, so that Verilator can drop unused flags
     .clk_i,
     .enable_i(1'b1),
     .data_i(flags),

@@ -3,16 +3,16 @@
 // Every core takes a format as two parameters, ExpWidth and FracWidth (binary32: 8 and 23, binary16: 5 and 10,
 // bfloat16: 8 and 7), packed as in IEEE 754: sign, biased exponent, fraction. Operands and results may be subnormal;
 // every NaN result is the one quiet NaN with sign 0 and only the top fraction bit set (0x7fc00000 in binary32). Formats
-// need 3 <= ExpWidth and 2 <= FracWidth <= 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2
-// signed bits; the divider needs FracWidth <= 53, the multiplier, with arith_pkg's groups, FracWidth <= 75.
+// need 3 <= ExpWidth and 2 <= FracWidth <= 2**(ExpWidth-1): the exponent of a subnormal result then fits into ExpWidth
+// + 2 signed bits. The divider needs FracWidth <= 53, the multiplier, with arith_pkg's groups, FracWidth <= 75.
 //
 // Sums and differences of significands and exponents are instances of hw/arith's adder (of kind Arith), products and
-// quotients of its multiplier and divider. Steps by one or two and comparisons are the language's operators, for which
-// synthesis makes structures no slower than ours.
+// quotients of its multiplier and divider. Comparisons and steps by one or two are the language's operators: synthesis
+// makes structures for them that are no slower than those of hw/arith.
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
 package fp_pkg;
 
-  // RISC-V's encoding. The other three values round towards zero.
+  // RISC-V's encoding. The values 5, 6 and 7 round towards zero.
   typedef enum logic [2:0] {
     RoundNearestEven         = 3'd0,
     RoundTowardZero          = 3'd1,
@@ -30,7 +30,7 @@ package fp_pkg;
     logic signaling_nan;
   } class_t;
 
-  // A result in place of the rounded value, and the flags that rounding does not raise: see fp_round
+  // A special result that replaces the rounded value, and the flags that rounding does not raise: see fp_round
   typedef struct packed {
     logic nan;
     logic infinity;

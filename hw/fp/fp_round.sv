@@ -3,8 +3,8 @@
 // The value is (-1)**sign_i * significand_i / 2**(FracWidth+3) * 2**(exponent_i + 1 - bias), with
 //   significand_i  two integer bits, FracWidth fraction bits, guard, round, sticky (the OR of all bits further down).
 //                  In [1, 4): a product or a quotient need not be normalised.
-//   exponent_i     the biased exponent *less one*, signed. The packed word is exponent_i plus the integer bits; if
-//                  exponent_i is below 0, the significand is first shifted right by -exponent_i.
+//   exponent_i     the biased exponent *less one*, signed. The integer bits 00, 01, 1x add 0, 1, 2 to it. If exponent_i
+//                  is below 0, the significand is first shifted right by -exponent_i.
 //
 // SubnormalShift = 0 omits the right shift, for a core whose significand is in place already: exponent_i is then never
 // negative, and if it is 0, significand_i may be anything in [0, 4), zero included. (Subnormal sums are exact and need
@@ -16,9 +16,9 @@
 //
 // rounding_mode_i: fp_pkg::rounding_mode_e; the reserved values 5, 6 and 7 round towards zero.
 // Tininess is detected after rounding with tininess_after_i = 1 (the value rounded with unbounded exponent is below
-// 2**(1-bias)), else before; underflow is tininess with inexactness.
+// 2**(1-bias)), else before rounding. Underflow is raised if the result is tiny and inexact.
 //
-// Combinational. Error: none but the rounding, 0.5 ulp to nearest, below 1 ulp in other modes.
+// Combinational. Error: at most 0.5 ulp when rounding to nearest, below 1 ulp in other modes.
 // Source: IEEE 754-2019, clauses 4.3 and 7.4 to 7.6.
 module fp_round #(
   parameter int unsigned ExpWidth       = 8,
@@ -54,14 +54,14 @@ module fp_round #(
   // ---- Subnormal results: shift right until the exponent is the smallest one
 
   logic [SigWidth-1:0] placed;
-  logic [FieldWidth-1:0] base;  // exponent_i, or 0 if that is negative
+  logic [FieldWidth-1:0] base;  // exponent_i, or 0 if exponent_i is negative
   logic negative;
 
   assign negative = exponent_i[ExpWidth+1];
   assign base = exponent_i[FieldWidth-1:0] & {FieldWidth{~negative}};
 
   if (SubnormalShift) begin : gen_shift
-    // By -exponent_i = ~exponent_i + 1
+    // By -exponent_i = ~exponent_i + 1; leaving out bit 0 of the significand is the shift by 1
     logic [SigWidth-2:0] shifted;
     logic lost;
 
@@ -109,11 +109,11 @@ module fp_round #(
   assign field = placed[SigWidth-1] ? base_plus_2 : placed[SigWidth-2] ? base_plus_1 : base;
 
   assign rounded = {field[ExpWidth-1:0], fraction} + WordWidth'(increment);
-  // In parallel with the increment, not after it.
+  // Computed in parallel with the increment
   assign overflow = (field >= InfField) | ((field == InfField - 1'b1) & (&fraction) & increment);
 
-  // ---- Tininess: the leading bit is below the integer bit. After rounding, the value is not tiny if rounding with
-  // unbounded exponent, one bit further down, carries into the integer bit: all ones, and an increment.
+  // ---- Tininess: before rounding, both integer bits are 0. After rounding, the value is not tiny if rounding it with
+  // an unbounded exponent, so one bit further down, carries into the integer bit: all bits are 1, and are incremented.
 
   logic tiny, increment_below;
   assign increment_below = (nearest & placed[1]) | (away & |placed[1:0]);

@@ -1,9 +1,10 @@
 // Adds, subtracts or multiplies vectors word by word: result[n] = a[n] op b[n].
 //
-// Latency: 3 clocks, or one step. Clocks = 1: a core for each word, a vector a clock; step_i is ignored. Else words
-// share cores, Clocks - 3 words per core: step_i is high in one of Clocks clocks. At that clock edge words are taken,
-// and result_o has the results of the words taken at the step before. Multiply: products; else sums, or differences for
-// words with a 1 in Subtract. Accepts every bit pattern; no flags.
+// Latency: 3 clocks, or one step. With Clocks = 1, each word has an adder or multiplier (core): a vector is taken in
+// every clock, and step_i is ignored. Else (5 or more) Clocks - 3 words share a core, and step_i must be high in one of
+// Clocks clocks. A clock edge with step_i high takes a vector; result_o then holds the results of the vector taken one
+// step before. Multiply = 1: products. Multiply = 0: sums, or differences for words with a 1 in Subtract. Accepts all
+// bit patterns.
 module fp_vector #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
@@ -22,7 +23,7 @@ module fp_vector #(
   output logic [Words*Width-1:0] result_o
 );
 
-  localparam int unsigned Share = (Clocks == 1) ? 1 : Clocks - 3;  // words of a core
+  localparam int unsigned Share = (Clocks == 1) ? 1 : Clocks - 3;  // words per core
   localparam int unsigned Units = (Words + Share - 1) / Share;
 
   if (Clocks != 1 && Clocks < 5) begin : gen_check
@@ -42,7 +43,7 @@ module fp_vector #(
       assign subtract = Subtract[u];
       assign result_o[Width*u+:Width] = result;
     end else begin : gen_turns
-      logic [Own*Width-1:0] a_q, b_q;  // the word that enters the core lowest
+      logic [Own*Width-1:0] a_q, b_q;  // lowest: the word that enters the core
       logic [Own-1:0] subtract_q;
       logic [(Share-1)*Width-1:0] results_q;  // the latest result highest
       logic [Share*Width-1:0] results;

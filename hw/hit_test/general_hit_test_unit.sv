@@ -1,7 +1,7 @@
 // The general form of the hit test, for comparison: t = -(d + N . O) / (N . I), P = O + t I, for a ray from any origin
 // O, with one multiplier, one adder and one divider: the cores of hit_test_unit.
 //
-// N = (a, b, c) and d are the plane N . P + d = 0 (so d has the other sign than hit_test_unit's), I is the ray's
+// N = (a, b, c) and d give the plane N . P + d = 0 (so d has the opposite sign of hit_test_unit's d). I is the ray's
 // direction. Ten words come in, three go out:
 //
 //   edge    bus in      what happens at this clock edge
@@ -14,10 +14,10 @@
 //   12                  -numerator / divisor into t
 //   13-15   the next N  V-1 + t * V-4 into Output: Px Py Pz; V shifts
 //
-// valid_i comes with the first word while ready_o; the other nine words follow in consecutive clocks.
+// The first word comes with valid_i high while ready_o is high; the other nine words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in the clock after each of edges 13, 14 and 15.
 // Throughput: a test every 10 clocks: ten words on one bus; the multiplier works in 9 of them.
-// Latency: 15 clocks; the least if one clock holds a multiplication and an addition, or a division.
+// Latency: 15 clocks (the minimum if a clock has time for a multiplication and an addition, or for a division).
 //
 // Operations: 9 multiplications, 8 additions, 1 division, rounded as in hit_test_unit.
 // Source: the paper's equations 4 and 5; the timetable is this project's.

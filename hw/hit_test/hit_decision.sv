@@ -1,13 +1,13 @@
 // Verdict of a test, hit, miss or doubt, from its dot products.
 //
-// U_k = I . E_k is sure if bound_k < |U_k| < infinity; its sign is then exact. d's sign is exact; the exact I . N has
-// this sign for every ray that hits ahead of its origin. A NaN for d means that its sign is unknown; two sure U_k of
-// opposite signs are then still a miss.
-//   miss   d = 0, or a sure U_k whose sign differs from d's, or from that of another sure U_k
-//   hit    all U_k sure with d's sign, and V = I . N good for a division: a normal number of d's sign whose exponent is
-//          at most max_grazing below the largest of N's
+// A record has a plane, d = N . A, and three edge planes E_k with error bounds bound_k (see hit_test_pkg). I is the
+// ray's direction. U_k = I . E_k, as computed, is sure if bound_k < |U_k| < infinity: its sign is then exact. The sign
+// of d is exact; if d is NaN, it is unknown. If a ray hits, the exact V = I . N and U_k have the sign of d.
+//   miss   d is 0, or a sure U_k has another sign than d or, if d is NaN, than another sure U_k
+//   hit    all U_k are sure and have d's sign, and V is fit for a division: V is a normal number with d's sign, and its
+//          exponent is at most max_grazing below the largest exponent of N's words
 //   doubt  everything else
-// Exactly one is true. A NaN is never sure. Words are compared as integers.
+// Exactly one of miss_o, hit_o, doubt_o is high. A U_k that is NaN is never sure. Words are compared as integers.
 //
 // t_error_o: see hit_test_pkg; valid for a hit only. Combinational.
 module hit_decision
@@ -54,7 +54,7 @@ module hit_decision
   // ---- The plane
 
   logic [ExpWidth-1:0] v_exponent;
-  logic [ExpWidth:0] grazing;  // modulo 2**(ExpWidth+1)
+  logic [ExpWidth:0] grazing;  // difference of exponents, modulo 2**(ExpWidth+1)
   logic grazing_negative, v_good;
 
   assign v_exponent       = v_i[FracWidth +: ExpWidth];

@@ -1,10 +1,10 @@
 // Dot products of a hit test: V = N . I and U_k = E_k . I of a polygon record, and d I_k, the dividends of its P.
 //
-// A dot product is (x + y) + z, rounded after each operation. Clocks: see fp_vector. Latency: DotLatency clocks, or
-// three steps. Throughput: a test a clock, or a step. Accepts every bit pattern.
+// A dot product is (x + y) + z, rounded after each operation. Clocks and steps: see fp_vector. Latency: DotLatency
+// clocks, or three steps. Throughput: a test a clock, or a step. Accepts every bit pattern.
 //
-// Each coordinate of I is a factor of five of the 15 products, the factor that the multipliers recode: tools merge the
-// five equal recoders.
+// Each coordinate of I multiplies five words. It is the operand that the multipliers recode (b_i of booth_multiplier),
+// so tools merge the five equal recoders.
 module hit_dots
   import hit_test_pkg::*;
 #(

@@ -1,11 +1,11 @@
 // Several pipelined hit-test units side by side, and their counters.
 //
-// Tests come in one wide word, results leave in another. Each lane has a slot in both and a valid/ready of its own, so
-// that no lane waits for another. All tests of a burst go to one lane, and its results come from that lane's slot, in
-// order. For a slot's contents see hit_test_pipeline; slot n of every port is the n-th from the bottom.
+// Every port has a slot for each lane, lane 0 lowest; for a slot's contents see hit_test_pipeline. Each lane has its
+// own valid and ready, so no lane waits for another. All tests of a burst must go to one lane, where results keep
+// order.
 //
-// counter_o is counter count_select_i of count_e, summed over the lanes since reset, modulo 2**CounterWidth, up to
-// three clocks late; other numbers give 0. Counters of clocks count each lane: with 4 lanes, 4 per clock.
+// counter_o is the counter of count_e that count_select_i selects (0 for other values), summed over the lanes since
+// reset, modulo 2**CounterWidth, up to three clocks late. Counters of clocks count each lane: 4 lanes, 4 per clock.
 module hit_test_array
   import hit_test_pkg::*;
 #(

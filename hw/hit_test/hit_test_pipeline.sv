@@ -1,12 +1,12 @@
 // Pipelined hit-test unit: verdict of each test, nearest hit of each burst. It takes a ray direction and a polygon
 // record in each clock; a burst's nearest hit comes with its t and P.
 //
-//   scale    each coordinate of I times five  15 multipliers, see hit_dots; their first registers take the test
+//   scale    I_k times N_k, the E_k and d     15 multipliers, see hit_dots; their first registers take the test
 //   add      V = N . I, U_k = E_k . I         8 adders
 //   decide   hit, miss or doubt               see hit_decision
 //   divide   t = d / V                        a divider
 //   nearest  the nearest hit of the burst     see nearest_hit
-//   point    P_k = (d I_k) / V, equation 10   3 dividers, as bursts may be as short as a test
+//   point    P_k = (d I_k) / V, equation 10   3 dividers, because a burst may have a single test
 //
 // Throughput: one test a clock. Latency: DotLatency + divide_latency + 3 clocks (see hit_test_pkg): from the clock edge
 // that takes a test to the edge after which its report, or the end of its burst, is at the output. All tests of a burst
@@ -15,16 +15,16 @@
 // Input: valid/ready; first_i and last_i mark the ends of a burst, tag_i is returned with results.
 // Output: valid/ready; one word carries up to three things:
 //   report_o         not ReportNone: the test report_tag_o is in doubt or in a near tie
-//   closed_o         a burst is over; bursts end in the order in which they came. If found_o, its nearest hit is test
-//                    tag_o, at t_o (error: see hit_test_pkg), and its P follows. If neither found_o nor a report,
-//                    report_tag_o is the tag of the last test.
+//   closed_o         a burst is over; bursts end in the order in which they came. If found_o is high, its nearest hit
+//                    is test tag_o, at t_o (error: see hit_test_pkg), and its P follows. If neither found_o is high nor
+//                    a test is reported, report_tag_o is the tag of the burst's last test.
 //   point_valid_o    point_o is the P of a burst that was closed with found_o earlier; bursts keep their order
 //
-// ready_o and valid_o are registers. The pipeline never stalls: a test is taken only while the queue of results has
-// room for a word from every clock of the latency. So ready_o is low only if results are not taken.
+// ready_o and valid_o are registers. The pipeline never stalls: a test is taken only while the queue of results has a
+// free word for every clock of the latency. So ready_o falls only if results are not taken.
 //
 // All words are IEEE numbers of the format ExpWidth, FracWidth; dot products are (x + y) + z, rounded after each
-// operation. RoundingMode applies to all operations; verdicts are never wrong with RoundNearestEven.
+// operation. RoundingMode applies to all operations. With RoundNearestEven, hit and miss verdicts are never wrong.
 module hit_test_pipeline
   import hit_test_pkg::*;
 #(
@@ -55,7 +55,7 @@ module hit_test_pipeline
   output logic [TErrorWidth-1:0]       t_error_o,
   output logic                         point_valid_o,
   output logic [3*Width-1:0]           point_o,
-  output logic [NumCounts-1:0]         events_o  // in this clock, see count_e
+  output logic [NumCounts-1:0]         events_o  // events of this clock, see count_e
 );
 
   localparam int unsigned DivideLatency = divide_latency(FracWidth);
@@ -91,7 +91,7 @@ module hit_test_pipeline
     .dividends_o(dot_dividends)
   );
 
-  // The rest of the record passes beside the dot products, with the largest exponent of N instead of N.
+  // The rest of the record bypasses the dot products. Of N, only the largest exponent is needed.
   logic [ExpWidth-1:0] nx_exponent, ny_exponent, nz_exponent, nxy_exponent, normal_exponent;
 
   assign nx_exponent     = record_i[Width*RecordNormal+FracWidth +: ExpWidth];

@@ -19,17 +19,19 @@ package hit_test_pkg;
   typedef enum logic [1:0] {
     ReportNone    = 2'd0,
     ReportDoubt   = 2'd1,  // neither surely hit nor surely missed, or t out of range
-    ReportNearTie = 2'd2   // a sure hit, but rounding cannot tell its t from that of the nearest
+    ReportNearTie = 2'd2   // a sure hit that may or may not be nearer than the nearest hit
   } report_e;
 
-  // ---- Error of t: at most 2**(TErrorUnit + t_error) units in its last place
+  // ---- Error of t = d / V, computed: at most 2**(TErrorUnit + t_error) units in its last place
   //
-  // With u = 2**-(FracWidth+1), V = fl(N . I), e(x) the exponent of x and g = max e(N_k) - e(V): the components of I
-  // are below 2 and the record's words are the exact ones within 1.01 u, so |V - exact| <= 4.04 u * 2 |N|_1 < 48.5 u
-  // 2**max e(N_k), relative to V at most r = 48.5 u 2**g. d adds 2 u and the division u. So at most (48.5 * 2**g + 3.2)
-  // / (1 - r) numbers lie between t and the exact value, which is below 2**(6 + max(g, 0)) while r <= 0.2: for every g
-  // up to max_grazing, in formats with FracWidth >= 7. Rays that graze the plane more than that are doubts.
-  // Holds for RoundNearestEven; the other modes have twice the error.
+  // Let u = 2**-(FracWidth+1), e(x) the exponent of x, e(N) the largest e(N_k), V = fl(N . I) and g = e(N) - e(V).
+  // Error of V: |I_k| < 2, N and d are within 1.01 u of the exact ones, and a dot product rounds three times. So V is
+  // off by at most 4.04 u * 2 (|N_x| + |N_y| + |N_z|) < 48.5 u 2**e(N), which is at most r = 48.5 u 2**g of V.
+  // Error of t: d adds less than 2 u, the division u. Floats near t are at least u t apart. So at most
+  // (48.5 * 2**g + 3.2) / (1 - r) of them lie between t and the exact t. This is below 2**(6 + max(g, 0)) while r <=
+  // 0.19: for all g up to max_grazing, if FracWidth >= 7. (A test with a larger g, a ray that grazes the plane, is a
+  // doubt.)
+  // This holds for RoundNearestEven; the other modes have twice the error.
   localparam int unsigned TErrorUnit = 6;
   localparam int unsigned TErrorWidth = 4;
 
@@ -43,12 +45,12 @@ package hit_test_pkg;
   localparam int unsigned AdderLatency = 3;
   localparam int unsigned DotLatency = MultiplierLatency + 2 * AdderLatency;
 
-  // fp_divider: a row for every two bits of the quotient, and five stages around them.
+  // Returns the latency of fp_divider: a row for every two bits of the quotient, and five stages around the rows.
   function automatic int unsigned divide_latency(int unsigned frac_width);
     divide_latency = (frac_width + 2) / 2 + 5;
   endfunction
 
-  // From the clock edge that takes a test to the edge after which its P, if it has one, leaves the dividers.
+  // Returns the clocks from the edge that takes a test to the edge after which its P, if any, leaves the dividers.
   function automatic int unsigned point_latency(int unsigned frac_width);
     point_latency = DotLatency + 2 * divide_latency(frac_width) + 3;
   endfunction
@@ -56,15 +58,15 @@ package hit_test_pkg;
   // ---- Counters of hit_test_array, by the number that selects them
 
   typedef enum logic [3:0] {
-    CountTests          = 4'd0,  // taken
+    CountTests          = 4'd0,  // tests taken
     CountMisses         = 4'd1,
-    CountHits           = 4'd2,  // sure ones, near ties included
+    CountHits           = 4'd2,  // sure hits, near ties included
     CountDoubts         = 4'd3,
     CountNearTies       = 4'd4,
     CountDistances      = 4'd5,  // divisions for t
-    CountPoints         = 4'd6,  // three divisions each
-    CountIdleClocks     = 4'd7,  // a lane could have taken a test, but none came
-    CountOutputStalls   = 4'd8   // a lane took no test because too few of its results were taken
+    CountPoints         = 4'd6,  // points P, three divisions each
+    CountIdleClocks     = 4'd7,  // clocks in which a lane could have taken a test, but none came
+    CountOutputStalls   = 4'd8   // clocks in which a lane's ready_o was low
   } count_e;
 
   localparam int unsigned NumCounts = 9;

@@ -13,16 +13,16 @@
 //   7      d            into d
 //   8-10   the next I   (d * I-1) / divisor into Output: Px Py Pz; the next I follows through N
 //
-// I-3, I-2 and I-1 shift at every edge. When Iz reaches I-3, at edge 4, the first factor a reaches N, so the path
-// through N costs no clock. The 8 clocks of the paper's section 4.2 are those until Px.
+// I-3, I-2 and I-1 shift at every edge. Iz reaches I-3 at edge 4, when the first factor, a, reaches N. So the path
+// through N costs no clock. (The paper's section 4.2 counts the 8 clocks until Px.)
 //
-// valid_i comes with the first word while ready_o; the other six words follow in consecutive clocks.
+// The first word comes with valid_i high while ready_o is high; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in the clock after each of edges 8, 9 and 10.
 // Throughput: a test every 7 clocks. Latency: 10 clocks (from first word to last component).
 //
 // Each operation is rounded once, in RoundingMode, in the order of the table, and conforms to IEEE 754; the accumulator
-// starts from +0. A ray parallel to the plane gives infinities, or NaN if d I is zero too. QuotientBits = 21 cuts
-// quotients off as the paper's divider did; 0 rounds them.
+// starts from +0. A ray parallel to the plane gives infinities, or NaN for components in which d I is zero too.
+// QuotientBits = 21 truncates quotients as the paper's divider did; 0 rounds them.
 // Source: the paper's equation 10, figures 4 and 9.
 module hit_test_unit #(
   parameter int unsigned ExpWidth = 8,

@@ -1,18 +1,18 @@
-// The paper's hit-test unit with a short clock: where a ray meets a polygon's plane, P = d I / (I . N). Its words, its
-// period and its results are hit_test_unit's; its cores are pipelined.
+// The paper's hit-test unit with a short clock: where a ray meets a polygon's plane, P = d I / (I . N). Its cores are
+// pipelined. The words on its bus, its throughput and its results are those of hit_test_unit.
 //
-// Six products go through one multiplier, two sums through one adder, three quotients by the one divisor I . N through
-// one divider. Their latencies are M = 3, A = 3 and D = divide_latency. Clocks count from the first word's clock edge:
+// One multiplier computes six products, one adder two sums, and one divider three quotients with the divisor I . N.
+// Their latencies are M = 3, A = 3 and D = divide_latency. Clocks count from the first word's clock edge:
 //
 //   clock      event
 //   1-3        Ix Iy Iz shift into I-3, I-2, I-1, which rotate while they are multiplied
 //   4-7        a, b, c, d in the factor
 //   M+4..M+9   the products a Ix, b Iy, c Iz, d Ix, d Iy, d Iz; the third and the last three are kept
-//   M+A+5      (+0 + a Ix) + b Iy: the paper's sum from +0 turns a first product of -0 to +0, unless rounding down
+//   M+A+5      (+0 + a Ix) + b Iy; as in the paper, the sum from +0 turns a Ix = -0 to +0, unless rounding down
 //   M+2A+5     I . N, the divisor; the last three products are divided in the clocks after it
 //   M+2A+D+6.. Px Py Pz
 //
-// valid_i comes with the first word while ready_o; the other six words follow in consecutive clocks.
+// The first word comes with valid_i high while ready_o is high; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in three consecutive clocks.
 // Throughput: a test every 7 clocks. Latency: M + 2A + D + 8 clocks, 34 in binary32 (first word to last component).
 // Source: the paper's equation 10; the timetable is this project's.
@@ -36,8 +36,8 @@ module iterative_hit_test_unit
 
   localparam int unsigned NumWords = 7;
 
-  // The adder's two sums must not collide in the period; the last of the three kept products must arrive before the
-  // first is divided, and must be divided before the next test's products arrive.
+  // The adder's two sums of a test must not collide with those of the next. The last of the three products that wait
+  // for the divisor must arrive before the first is divided, and leave before the next test's products arrive.
   if (AdderLatency < 2 || 2 * AdderLatency - 1 > NumWords) begin : gen_check
     $error("iterative_hit_test_unit: expected an AdderLatency of 2 to (NumWords + 1) / 2");
   end

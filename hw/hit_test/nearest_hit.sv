@@ -3,17 +3,16 @@
 // Distances are compared as integers, which orders positive floats. Two distances that differ by no more than the sum
 // of their errors (2**(TErrorUnit + t_error) units in the last place each) are a near tie: either hit may be nearer.
 // The hit with the smaller t is kept (of equal ones the first), the other hit is reported. So a hit that is dropped
-// without a report is certainly farther than the hit kept at that time. That one is kept, reported, or certainly
-// farther than a later one.
+// without a report is certainly farther than the hit kept at that time. The kept hit in turn is the burst's result, or
+// is reported, or is certainly farther than a later hit.
 //
 // A sure hit whose t is no positive normal number is reported as a doubt.
 //
-// All outputs except sure_hit_o are registers. With the last test of a burst come:
-//   closed_o  for one clock; then found_o says whether the burst has a nearest hit, and tag, t, t_error and payload_o
-//             are that hit's. closed_o and found_o are reset.
-//   report_o, report_tag_o may come with any test, and concern that test or the hit that it replaces. Without a report,
-//             report_tag_o is the test's own tag.
-// payload_i is any other data to keep of the nearest hit.
+// All outputs except sure_hit_o are registers:
+//   closed_o  high for one clock after the last test of a burst. found_o then says whether the burst has a nearest hit,
+//             and tag_o, t_o, t_error_o and payload_o are that hit's. closed_o and found_o are reset.
+//   report_o  after any test. report_tag_o is the reported hit's tag or, without a report, the tag of the last test.
+// payload_i is user data that is kept with the nearest hit.
 module nearest_hit
   import hit_test_pkg::*;
 #(
@@ -26,8 +25,8 @@ module nearest_hit
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    valid_i,  // a test; else the inputs below are ignored
-  input  logic                    first_i,  // of its burst
-  input  logic                    last_i,  // of its burst
+  input  logic                    first_i,  // the first test of its burst
+  input  logic                    last_i,  // the last test of its burst
   input  logic                    hit_i,
   input  logic                    doubt_i,
   input  logic [TagWidth-1:0]     tag_i,

@@ -1,11 +1,11 @@
 // AXI4 read manager: the core's memory port, a burst for each line.
 //
-// A line's burst begins at a multiple of 64 bytes: none crosses 4 KiB. Each burst in flight has its own AXI ID, so
-// bursts may be answered in any order, with their beats interleaved. base_i is the address of line 0.
+// A line's burst begins at a multiple of 64 bytes, so no burst crosses 4 KiB. Each burst in flight has its own AXI ID,
+// so bursts may be answered in any order, with their beats interleaved. base_i is the address of line 0.
 //
-// At most 2**IdWidth lines are outstanding; more wait. Latency: 1 clock (from a line's last beat until it is offered).
-// bus_error_o: a beat of line error_number_o came with an error, or with a wrong RLAST; the line is then offered with
-// line_error_o. No output of AXI depends on an input in the same clock.
+// At most 2**IdWidth lines are outstanding; further requests wait. Latency: 1 clock (from a line's last beat until it
+// is offered). bus_error_o: a beat of line error_number_o came with an error, or with a wrong RLAST; the line is then
+// offered with line_error_o. No AXI output depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.
 module axi_read_manager
   import ray_core_pkg::*;
@@ -100,7 +100,7 @@ module axi_read_manager
   assign axi_arsize_o  = 3'($clog2(DataWidth / 8));
   assign axi_arburst_o = BurstIncrement;
 
-  // ---- Beats: all but a line's last beat wait for the last one, each in its own memory
+  // ---- Beats: beat b of a line waits in memory b for the line's last beat
 
   logic [DataWidth-1:0] beat, last_beat_q;
 

@@ -1,10 +1,10 @@
 // AXI4 write manager: results of 32 bytes to memory, a burst each.
 //
-// Result n (0, 1, ...) goes to base_i + 32 n while n is below length_i; further results wait until rewind_i, after
-// which n is 0 again. written_o: results whose writes have been answered, in order, as all have the same AXI ID.
+// Result n (0, 1, ...) goes to base_i + 32 n while n is below length_i. Further results wait until rewind_i, which
+// makes n 0 again. written_o counts the writes that have been answered; with one AXI ID, answers come in order.
 //
 // Throughput: a result in 256 / DataWidth clocks, at least 1 (a clock for each beat). On a port of 512 bits a beat uses
-// the half that its address selects. No output of AXI depends on an input in the same clock.
+// the half that its address selects. No AXI output depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.
 module axi_write_manager #(
   parameter int unsigned DataWidth = 128,  // 32 to 512, a power of two
@@ -16,7 +16,7 @@ module axi_write_manager #(
   input  logic [31:0]            length_i,  // capacity in results
   input  logic                   rewind_i,  // only while not busy_o
   output logic                   busy_o,  // a result's write has not been answered
-  output logic                   full_o,  // a result waits for capacity, all others are written
+  output logic                   full_o,  // a result waits for capacity; all others are written
   output logic                   bus_error_o,  // an answer in this clock has an error
   output logic [31:0]            written_o,
   input  logic                   record_valid_i,
@@ -49,7 +49,7 @@ module axi_write_manager #(
   end
 
   logic [31:0] next_q;
-  logic [2:0] left_q;  // beats after the one that is offered
+  logic [2:0] left_q;  // beats that follow the offered beat
   logic [RecordWidth-1:0] record_q;
   logic fire, some_room, address_free, data_free;
 

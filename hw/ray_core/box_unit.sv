@@ -6,38 +6,37 @@
 //   scale       2**E, a bound of t in this node; caps of 1 / I_k            see ray_scale
 //   multiply    a_k = D_k / I_k                                             3 multipliers
 //   align       a_k and the grid's step s_k in units of 2**(E - 22),        see slab_setup
-//               error margin r_k
+//               bound r_k of their errors
 //   step        a_k -+ r_k +- q s_k for the planes of all boxes             42 products, 8 x 33, see plane_offset
 //   enter       largest near plane, smallest far plane                      49 comparisons, see slab_test
 //   sort        near first; the group                                       see child_sort, sort7
 //
-// If Clocks is not 1, one child is stepped and entered in each clock, and the latency is Children clocks more. The ray
-// comes a clock after its node, from a memory.
+// If Clocks is not 1, one child is stepped and entered in each clock, and the latency is Children clocks more. The
+// ray's words come from a memory, a clock after node_i.
 //
 // In:  ctx_i        the ray's context; node_i: its node, see ray_core_pkg; a node with an error has no children
 //      origin_i     O, binary32; word x lowest, here and below
 //      inverse_i    1 / I_k, rounded to nearest (infinite where I_k is zero); the largest I_k is in [1, 2)
-//      t_max_i      a positive binary32 number without its sign, or infinity: farther hits are not
-//                   wanted
+//      t_max_i      a positive binary32 number without its sign, or infinity: no farther hits are wanted
 // Out: ctx_o, boxes_o  the group; entries that are in neither mask are invalid
 //
-// Every box is entered in which the ray has a point O + t I with 0 < t <= t_max, in exact arithmetic:
+// Claim: if the ray has a point O + t I with 0 < t <= t_max in a box, in exact arithmetic, the box is entered. Proof,
+// with u = 2**-24 and without the bias in e_k:
 //
-//  1. E. Such a t is at most (|origin_k - O_k| + 255 * 2**e_k) / |I_k| for each k (e_k without its bias), and
-//     at most t_max. With D_k and 1 / I_k as computed the first bound is below 2**(M + exponent(1 / I_k) + 2),
-//     where 2**M is above |D_k| and 2**(e_k + 8), which leaves more than the rounding of D_k. E is the least of
-//     these exponents, but at least -100, so that underflow changes less than a unit.
-//  2. A plane of the grid is met at t = (D_k + q 2**e_k) / I_k = a_k +- q s_k, with s_k = 2**e_k / |I_k|.
-//     a_k is off by three roundings, 3.01 * 2**-24 of itself, and 1 unit by truncation; q s_k by one
-//     rounding, 2**-24 of itself, and 2 units by two truncations. r_k is |a_k| 2**-22 + 256 s_k 2**-24
-//     + 6 units, each term truncated, which is more.
-//  3. If s_k is above 2**(E + 2), or infinite, the ray moves less than a quarter of a cell along k while
-//     t < 2**E. It is replaced by a ray with s_k = 2**(E + 2), the cap, which moves a quarter of a cell in 2**E:
-//     the two are less than a quarter of a cell apart. So 2**E is added to r_k.
+//  1. Bound of t. In the box, t is at most t_max and at most (|origin_k - O_k| + 255 * 2**e_k) / |I_k| for each k. Let
+//     2**M be above the computed |D_k| and above 2**(e_k + 8). Then the dividend is below 2**(M + 1), and the quotient
+//     below 2**(M + exponent(1 / I_k) + 2). E is the least of these exponents and that of t_max plus one, so t < 2**E.
+//     E is raised to at least -100, so that underflow changes less than a unit.
+//  2. Error of planes. The ray meets a plane of the grid at t = (D_k + q 2**e_k) / I_k = a_k +- q s_k, with
+//     s_k = 2**e_k / |I_k|. a_k is off by three roundings, 3.01 u |a_k|, and 1 unit by truncation. q s_k is off by one
+//     rounding, u q s_k, and 2 units by two truncations. r_k = 4 u |a_k| + 256 u s_k + 6 units is more, though its
+//     first two terms are truncated.
+//  3. If s_k is above the cap, 2**(E + 2), the ray moves less than a quarter of a cell along k while t < 2**E. It is
+//     replaced by a ray with s_k = 2**(E + 2), which moves a quarter of a cell. The two are less than a quarter of a
+//     cell apart, so t changes by less than s_k / 4 = 2**E. This is added to r_k.
 //  4. |a_k| is limited to 2**(E + 11). As 255 s_k is less than 2**(E + 10), all planes are then beyond 2**E, or all
-//     behind the ray, as without the limit. An axis along which the numbers would overflow is ignored: all its
-//     planes count as met.
-//  5. So near planes are computed too near, far planes too far, and no box is left out.
+//     behind the ray, as without the limit. If binary32 overflows on an axis, all planes of the axis count as met.
+//  5. So near planes are computed too near and far planes too far: the box is entered.
 //
 // Source: quantised boxes: Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through
 // compressed wide BVHs", 2017.
@@ -45,7 +44,7 @@ module box_unit
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays = 64,
-  parameter int unsigned Clocks = 1,  // per node: 1, or Children or more
+  parameter int unsigned Clocks = 1,  // clocks per node: 1, or Children or more
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
@@ -62,7 +61,7 @@ module box_unit
 
   localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;  // 2**E
 
-  // Clocks of the stages
+  // Latencies of the stages, in clocks
   localparam int unsigned Take = 2;
   localparam int unsigned Subtract = hit_test_pkg::AdderLatency;
   localparam int unsigned Scale = 3;
@@ -106,7 +105,7 @@ module box_unit
     {origin_q, inverse_q, t_max_q} <= {origin_i, inverse_i, t_max_i};
   end
 
-  // Passes beside the arithmetic: base, kinds and boxes of the node, and the ray's t_max
+  // These words bypass the arithmetic: base, kinds and boxes of the node, and the ray's t_max
   localparam int unsigned Base = NodeBase;
   localparam int unsigned ChildrenWidth = LineWidth - Base;
   localparam int unsigned Kinds = NodeKinds - Base;
@@ -196,7 +195,7 @@ module box_unit
 
   // ---- Align
 
-  logic [1:0][2:0][PlaneWidth-1:0] planes_q, next_planes_q;  // a_k - r_k; a_k + r_k
+  logic [1:0][2:0][PlaneWidth-1:0] planes_q, next_planes_q;  // [0]: a_k - r_k; [1]: a_k + r_k
   logic [3*StepWidth-1:0] step_q;
   logic [2:0] back, aligned_back, next_back_q;
   logic [8:0] aligned_exponent, sorted_exponent;
@@ -254,12 +253,12 @@ module box_unit
     .data_o({children, aligned_exponent, aligned_back})
   );
 
-  // ---- Step and enter: a key for each child, {left out, enter}; all children at once, or one per clock
+  // ---- Step and enter: a key for each child, {not entered, enter}; all children at once, or one per clock
 
   localparam int unsigned Tests = (Clocks == 1) ? Children : 1;
   localparam int unsigned KeyWidth = UnitBits + 2;
 
-  logic [Boxes-1:0] stepped_node, sorted_node;  // base and kinds
+  logic [Boxes-1:0] stepped_node, sorted_node;  // base and kinds of the node
   logic [8:0] stepped_exponent;
   logic [Children*KeyWidth-1:0] keys;
   logic [Tests*KeyWidth-1:0] tested;

@@ -17,7 +17,7 @@ module child_sort
 
   localparam int unsigned NumberWidth = 3;
   localparam int unsigned WordWidth = KeyWidth + NumberWidth;
-  localparam int unsigned UnitsWidth = 12;  // bits kept of a distance
+  localparam int unsigned UnitsWidth = 12;  // bits of a distance that are kept
   localparam int unsigned ZerosWidth = $clog2(UnitsWidth);
 
   // ---- Sort: {key, number of the child}
@@ -49,7 +49,7 @@ module child_sort
     .data_o({kinds, offsets, base, last_field})
   );
 
-  // ---- The children's first lines follow each other
+  // ---- Offsets of the children's first lines, which are consecutive
 
   always_comb begin : lines
     logic [OffsetWidth-1:0] next;
@@ -83,7 +83,7 @@ module child_sort
     assign inner[n] = ~left_out & is_inner;
     assign leaf[n]  = ~left_out & ~is_inner;
 
-    // The distance as an ordered word
+    // The distance as the upper bits of a binary32 number, rounded down
     leading_zero_counter #(
       .Width(UnitsWidth)
     ) u_zeros (

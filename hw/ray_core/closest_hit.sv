@@ -1,26 +1,26 @@
 // Closest hit of each ray: its nearest certain hit, t_max, its doubts.
 //
-// A hit's t may be off by 2**t_error units (set_up_pkg), so it has an upper and a lower bound. Of a ray's certain hits
-// the one with the smallest upper bound is kept, and that bound becomes the ray's t_max; a hit whose lower bound is
-// beyond t_max is dropped. If the bounds of two hits overlap, neither is known to be nearer: the hit that is not kept
-// leaves as a doubt, as does a test without a verdict. Distances are positive floats, ordered as integers. At first
-// t_max is the user's: a hit that may lie beyond it is a doubt. A ray with any_hit ends with its first certain hit.
+// A hit's t may be off by 2**t_error units (set_up_pkg), so it has an upper and a lower bound. Of a ray's certain hits,
+// the hit with the smallest upper bound is kept; this bound becomes the ray's t_max. A hit whose lower bound is beyond
+// t_max is dropped. If the bounds of two hits overlap, either may be nearer: the hit that is not kept leaves as a
+// doubt. So does a test without a verdict. Distances are positive floats, which compare as integers. At first t_max is
+// the user's: a hit that may lie beyond it is a doubt. A ray with any_hit ends with its first certain hit.
 //
 // Credits count tests in flight, starting at test_i, and waiting doubts: tests_allowed_o is low while all Queue are
 // used. So neither a test nor a line from memory ever waits for a doubt to leave.
 //
 // With Exact no doubt leaves: open_o passes each to exact_resolver in the clock in which its test ends. If a doubt is
-// the ray's nearest hit, its triangle is tested again with settle_i, as the ray's last test, and kept whatever the
-// verdict: with t and P if it is a certain hit, else with NoT.
+// the ray's nearest hit, its triangle is tested again with settle_i, as the ray's last test. This hit is kept whatever
+// the verdict: with t and P if it is certain, else with NoT.
 //
-// Throughput: a result a clock; it is compared in the next clock. A ray's tests are over when as many results have been
-// compared as there were clocks with test_i.
+// Throughput: a result a clock; each is compared in the clock after it came. A ray's tests are over when as many
+// results have been compared as there were clocks with test_i.
 module closest_hit
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays = 64,
   parameter bit Exact = 1'b0,
-  parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be in flight
+  parameter int unsigned Queue = 2 * Rays + 128,  // doubts: all tests that can be in flight
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                    clk_i,
@@ -33,13 +33,13 @@ module closest_hit
   // a test begins: a ray's triangle was requested
   input  logic                    test_i,
   input  logic [RayWidth-1:0]     test_ray_i,
-  input  logic                    settle_i,  // with test_i
+  input  logic                    settle_i,  // with test_i: test of a doubt that is the nearest hit
   output logic                    tests_allowed_o,
   // a test is over
   input  logic [RayWidth-1:0]     result_ray_i,
-  input  logic [31:0]             result_tag_i,  // the ray's, for doubts
+  input  logic [31:0]             result_tag_i,  // tag of result_ray_i, for doubts
   input  verdict_t                result_i,
-  // A ray's t_max, a clock after its number; exact_o in the same clock. ended: any_hit found a hit, or the ray failed
+  // A ray's t_max, a clock after its number; exact_o in the same clock. ended: the ray has any_hit and a hit, or failed
   input  logic [Rays-1:0]         failed_i,
   input  logic [RayWidth-1:0]     traversal_ray_i,
   output logic [30:0]             traversal_t_max_o,
@@ -57,17 +57,17 @@ module closest_hit
   input  logic                    doubt_fire_i,  // doubt_o leaves, or exact_resolver takes a doubt
   output logic [RayWidth-1:0]     open_ray_o,
   output open_t                   open_o,
-  // the nearest hit of a ray, in the same clock
+  // the nearest hit of the ray end_ray_i, in the same clock
   input  logic [RayWidth-1:0]     end_ray_i,
   output hit_t                    end_o,
-  // the P of the hit that was kept last, in the clock after point_ray_i
+  // the P of the hit that the ray point_ray_i kept last, a clock later
   input  logic [RayWidth-1:0]     point_ray_i,
   output logic [95:0]             point_o,
   // event of this clock, for counters
   output logic                    near_tie_o
 );
 
-  localparam int unsigned CountWidth = $clog2(Queue + 2);  // up to Queue + 1: with settle_i's
+  localparam int unsigned CountWidth = $clog2(Queue + 2);  // up to Queue + 1, one with settle_i
 
   logic [30:0] t_max[Rays];
   logic [31:0] nearest_t[Rays];
@@ -75,7 +75,7 @@ module closest_hit
   logic [TErrorWidth-1:0] nearest_error[Rays];
   logic [31:0] nearest_triangle[Rays];
   logic [TestsWidth-1:0] tests[Rays];
-  logic [CountWidth-1:0] counts[Rays];  // tests in flight
+  logic [CountWidth-1:0] counts[Rays];  // number of tests in flight
   logic [Rays-1:0] found_q, any_hit_q, ended;
   logic [RayWidth-1:0] traversal_ray_q, leaf_ray_q, box_ray_q;
 
@@ -178,8 +178,8 @@ module closest_hit
 
   // ---- Doubts
 
-  logic [CountWidth-1:0] here_q;  // tests in flight and doubts, without tests of settle_i
-  logic taken, returned;  // credits
+  logic [CountWidth-1:0] here_q;  // tests in flight, without settle_i's, and doubts
+  logic taken, returned;  // a credit is taken, is returned
 
   assign taken    = test_i & ~settle_i;
   assign returned = is_over_q & ~settled_q & ~doubt;

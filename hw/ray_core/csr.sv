@@ -1,7 +1,7 @@
 // Control and status registers of the ray core, on AXI4-Lite: what to draw, from which memory, counters, flags.
 //
-// registers.md has the words, bits, and what is refused while the core is busy; csr_pkg is made from it. One write and
-// one read at a time; no output of AXI depends on an input in the same clock. interrupt_o: an enabled flag is high.
+// registers.md has the words, bits, and what is refused while the core is busy; csr_pkg is generated from it. One write
+// and one read at a time; no AXI output depends on an input in the same clock. interrupt_o: an enabled flag is high.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
 module csr
   import ray_core_pkg::*, csr_pkg::*;
@@ -29,7 +29,7 @@ module csr
   output logic [31:0]             axi_rdata_o,
   output logic [1:0]              axi_rresp_o,
   // the core's side
-  output logic                    start_o,  // commands, for this clock
+  output logic                    start_o,  // commands, high for one clock
   output logic                    invalidate_o,
   output logic                    abort_o,  // high until no ray is left
   output logic                    drawing_o,  // a rectangle's rays are being traced
@@ -40,7 +40,7 @@ module csr
   output logic [4*96-1:0]         camera_o,  // eye lowest, then first, right, down
   output logic [63:0]             results_o,
   output logic [31:0]             length_o,
-  output logic                    rewind_o,  // command, for this clock
+  output logic                    rewind_o,  // command, high for one clock
   input  logic                    camera_busy_i,
   input  logic                    core_busy_i,  // rays are in the core
   input  logic                    outstanding_i,
@@ -65,10 +65,10 @@ module csr
 
   // ---- Writes: address and data are taken, each into a register; then the word is written
 
-  logic write, refused, address_q, data_q;  // address_q, data_q: it has been taken
+  logic write, refused, address_q, data_q;  // address_q, data_q: taken, not written yet
   logic [9:0] write_word_q, read_word;
   logic [3:0] strobes_q;
-  logic [31:0] write_data_q, mask;  // the bits to write
+  logic [31:0] write_data_q, mask;  // mask: the bits to write
 
   assign write         = address_q & data_q & ~axi_bvalid_o;
   assign axi_awready_o = ~address_q;

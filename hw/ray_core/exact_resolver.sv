@@ -1,24 +1,24 @@
 // Resolver of doubts: asks exact_unit what closest_hit leaves open. So no doubt leaves the core.
 //
-// For each ray it keeps the candidate: the nearest of its doubts that is hit.
+// For each ray it keeps the candidate: the nearest of the ray's doubts that are hits.
 //
 //   a doubt   Does the ray hit it (asked unless it is certain), and is it nearer than the candidate, if there is one?
-//             Then it becomes the candidate.
+//             If so, the doubt becomes the candidate.
 //   settling  When nothing else is left to do for the ray: is the candidate nearer than closest_hit's certain hit or,
-//             without one, than the user's t_max? Then its triangle is tested once more, for t and P.
+//             without such a hit, than the user's t_max? If so, its triangle is tested once more, for t and P.
 //
-// Of hits at the same t, the one of lower rank is nearer. Corners are read by line, as for tests. Latency: exact_unit's
-// plus 8 clocks (for a question), plus up to two reads through the triangle cache. A ray's questions come one by one;
-// those of different rays are spread over Units exact_units. Doubts of a ray that has ended are dropped.
+// Of hits at the same t, the hit of lower rank is nearer. Corners are read from triangle lines, as for tests. Latency:
+// exact_unit's plus 8 clocks (for a question), plus up to two reads through the triangle cache. A ray has one question
+// at a time; questions of different rays are spread over Units exact_units. Doubts of a ray that has ended are dropped.
 //
-// closest_hit's credits reserve a place for every doubt here. So no test waits for the resolver, which may wait for
-// lines that come after the test's.
+// closest_hit's credits reserve a place in the queue here for every doubt. So no test waits for the resolver. (It would
+// be a deadlock: the resolver may wait for lines that come after the test's.)
 module exact_resolver
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Units = 1,
-  parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be in flight
+  parameter int unsigned Queue = 2 * Rays + 128,  // doubts: all tests that can be in flight
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
@@ -29,17 +29,17 @@ module exact_resolver
   input  logic [RayWidth-1:0]     load_ctx_i,
   input  logic [95:0]             load_origin_i,
   input  logic [95:0]             load_direction_i,
-  // a test leaves a doubt; taken_o: a doubt leaves the queue
+  // a doubt of closest_hit enters the queue; taken_o: a doubt leaves the queue
   input  logic [RayWidth-1:0]     open_ctx_i,
   input  open_t                   open_i,
   output logic                    taken_o,
-  // rays with nothing else to do, and rays that have doubts or a candidate
+  // idle_i: rays without nodes, leaves and tests; busy_o: rays that have doubts or a candidate
   input  logic [Rays-1:0]         idle_i,
   output logic [Rays-1:0]         busy_o,
   // the current ray; what is known of it, in the same clock
   output logic [RayWidth-1:0]     ctx_o,
   input  known_t                  known_i,
-  // requests for its lines: exact ones for here, others for the test whose hit is kept
+  // requests for the current ray's lines: `exact` ones for this module, others for a candidate's last test
   output triangle_request_t       request_o,
   input  logic                    request_ready_i,
   input  triangle_line_t          line_i,
@@ -91,15 +91,15 @@ module exact_resolver
   // ---- For each ray: whether its doubts wait, its candidate, and whether a question about it is open
 
   // Doubts are numbered as they come, and leave in that order: when a ray's last doubt leaves, none of its doubts
-  // waits. There are more numbers than doubts can wait.
+  // waits. Numbers wrap, but there are more numbers than places in the queue.
   logic [CountWidth-1:0] pushed_q, popped_q;  // doubts that came and left
   logic [CountWidth-1:0] lasts[Rays];  // number of the ray's last doubt
-  logic [AddressWidth-1:0] candidates[Rays];  // lines
+  logic [AddressWidth-1:0] candidates[Rays];  // line of the ray's candidate
   logic [Rays-1:0] doubtful_q, candidate_q, open_q, ready_q;
   logic [RayWidth-1:0] ready_ctx, next_ctx;
   logic settle, begin_any, done, doubt_done, is_last, keep, drop;
-  logic settling_q, is_hit_q;  // the question settles; the doubt is surely a hit
-  logic [AddressWidth-1:0] line_q;  // of the doubt, or the candidate
+  logic settling_q, is_hit_q;  // the question is of settling; the doubt is certainly a hit
+  logic [AddressWidth-1:0] line_q;  // line of the doubt or candidate in question
 
   assign busy_o  = doubtful_q | open_q | candidate_q;
   assign is_last = (state_q == StateLook) & ~settling_q & (lasts[ctx_o] == popped_q);
@@ -141,7 +141,7 @@ module exact_resolver
   // ---- The question
 
   logic has_candidate, simple, lacks_q, nearer_q;
-  logic ended_q, found_q;  // of the current ray
+  logic ended_q, found_q;  // known_i.ended and .found of the current ray
   logic [1:0] against, against_q;  // exact_pkg::against_e
   logic [AddressWidth-1:0] other_line_q, candidate;
   logic [CornersWidth-1:0] corners_q, other_q;
@@ -150,7 +150,7 @@ module exact_resolver
   logic fetch, line_here;
   logic [Units-1:0] unit_ready, free, unit_valid, answered, nearer;  // free, answered: one-hot
   logic [Units*AboutWidth-1:0] abouts;
-  logic [AboutWidth-1:0] about;  // of the unit that has answered
+  logic [AboutWidth-1:0] about;  // what the unit that has answered was asked about
 
   assign candidate     = candidates[ctx_o];
   assign has_candidate = candidate_q[ctx_o];
@@ -160,7 +160,7 @@ module exact_resolver
     if (settling_q ? found_q : has_candidate) against = exact_pkg::AgainstOther;
     else if (settling_q && known_i.t_max != Infinity) against = exact_pkg::AgainstLimit;
   end
-  // No question is needed.
+  // The answer is known without a question.
   assign simple = (against == exact_pkg::AgainstNothing) & (settling_q | is_hit_q);
 
   assign line_here = line_i.valid & line_i.exact;
@@ -216,7 +216,7 @@ module exact_resolver
       is_hit_q   <= settle | queued_hit;
       line_q     <= settle ? candidates[ready_ctx] : queued_line;
     end
-    // A line with an error, and a candidate that is tested, end in StateAnswer a clock later, so that the cache's
+    // A line with an error, and the test of a candidate, end the question in StateAnswer, a clock later. So the cache's
     // outputs, which come late in a clock, reach only state_q in that clock.
     if (state_q == StateWait || state_q == StateTest) nearer_q <= 1'b0;
     if (state_q == StateLook) begin
@@ -226,9 +226,9 @@ module exact_resolver
     end
     if (state_q == StateChoose) begin
       against_q <= against;
-      lacks_q   <= against == exact_pkg::AgainstOther;  // the other triangle's line comes first
+      lacks_q   <= against == exact_pkg::AgainstOther;  // the other triangle's line is read first
     end
-    // The cache's outputs come late in a clock: too late to enable so many registers.
+    // The cache's outputs come too late in a clock to enable so many registers.
     if (state_q == StateFetch) {other_q, other_rank_q} <= {corners_q, rank_q};
     if (state_q == StateWait) begin
       corners_q <= line_i.line[TriangleCorners+:CornersWidth];
@@ -265,7 +265,7 @@ module exact_resolver
 
   for (genvar u = 0; u < Units; u++) begin : gen_unit
     logic ask, wins_tie_q, hit;
-    logic negative, nonzero;  // of the order
+    logic negative, nonzero;  // sign of the unit's order_o
     logic [AboutWidth-1:0] about_q;
 
     assign ask       = (state_q == StateAsk) & free[u];

@@ -1,28 +1,28 @@
 // Non-blocking cache of memory lines of one kind, nodes or triangles: eight ways, read only.
 //
-// The lowest bits of a line's number select its set. A miss takes a way of its set, the one after the way that was used
-// last, and asks memory for the line. Until the line comes, further requests for it join the miss as its targets. If
-// all ways of the set wait for other lines, the request waits.
+// The lowest bits of a line's number select its set. A miss requests the line from memory and takes a way of its set
+// that waits for no line: the first after the way that was used last. Until the line comes, further requests for it
+// join the miss as its targets. If all ways of the set wait for other lines, the request waits.
 //
 //   ask      a request is taken; the tags of its set are read
-//   compare  the tags of its set are compared with the line's
+//   compare  these tags are compared with the line's
 //   look up  a hit's line is read, a miss asks memory
 //   queue    hits wait for a clock in which no line from memory leaves
 //
 // A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken, and is dropped
 // if its set has no way for it or memory takes no request. outstanding_o: a prefetch is being looked up.
 //
-// A line from memory is taken when the previous one has left or leaves: it is written, and its latest target is looked
-// up. From the next clock it goes to its targets, one per clock, the latest first. Throughput: a line a clock; lines
-// leave in any order, each with the ray that asked. While a line from memory leaves, hits wait in their queue; requests
-// are still looked up. A line with an error goes to its targets with error_o, and is not kept.
+// A line from memory is taken when the previous one has left, or leaves for its last target. It is written, and its
+// latest target is looked up. From the next clock the line goes to its targets, one per clock, the latest first. While
+// it leaves, hits wait in their queue; requests are still looked up. A line with an error goes to its targets with
+// error_o, and is not kept. Throughput: a line a clock; lines leave in any order, each with the ray that asked.
 //
 // invalidate_i empties the cache; no request and no line may be in flight then.
 module line_cache
   import ray_core_pkg::*;
 #(
   parameter int unsigned Lines    = 256,
-  parameter int unsigned Targets  = 64,   // requests that may wait for lines
+  parameter int unsigned Targets  = 64,   // number of requests that may wait for lines
   parameter int unsigned RayWidth = 6,
   parameter int unsigned Width    = LineWidth,  // bits kept of a line
   localparam int unsigned EntryWidth = $clog2(Lines),
@@ -51,7 +51,7 @@ module line_cache
   input  logic                    fill_error_i,
   // answers
   output logic                    valid_o,
-  input  logic                    ready_i,  // else nothing leaves
+  input  logic                    ready_i,  // if it is low, no line leaves
   output logic [RayWidth-1:0]     ray_o,
   output logic [Width-1:0]        line_o,
   output logic                    error_o
@@ -67,7 +67,7 @@ module line_cache
     $error("line_cache: expected Lines of 16 or more, a power of two, and Targets of 2 or more");
   end
 
-  logic [Lines-1:0] valid_q, pending_q;  // the entry's line is here; it is on its way
+  logic [Lines-1:0] valid_q, pending_q;  // the entry's line is here; the line is requested
   logic [Sets-1:0][WayWidth-1:0] victims_q;  // by set: the way after the one that was used last
 
   // ---- Ask
@@ -99,7 +99,7 @@ module line_cache
       compare_ray_q    <= ray_i;
       compare_tag_q    <= asked_tag;
       compare_set_q    <= asked_set;
-      // A tag that is written at this edge is read with its old value.
+      // The ram reads the old value of a tag that is written at this edge.
       changed_q     <= allocate & (asked_set == set);
       changed_way_q <= way;
       changed_tag_q <= tag;
@@ -126,7 +126,7 @@ module line_cache
     .data_o(set_tags)
   );
 
-  // ---- Compare: with the set's ways as they are after this clock
+  // ---- Compare: same, valid and pending are for the state of the ways after this clock
 
   logic [SetWidth-1:0] fill_set;
   logic [WayWidth-1:0] fill_way;

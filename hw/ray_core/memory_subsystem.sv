@@ -7,15 +7,14 @@
 // of prefetches is full. Its line may come after the last ray has ended: while outstanding_o is high, memory must not
 // change and the caches must not be emptied.
 //
-// Lines leave with step_o, which is high in one of Clocks clocks, and wait for nothing else: line_ready_o does not
-// depend on results.
+// Lines leave with step_o, which is high in one of Clocks clocks. line_ready_o does not depend on results.
 module memory_subsystem
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays          = 64,
-  parameter int unsigned NodeLines     = 256,  // of the nodes' cache
-  parameter int unsigned TriangleLines = 256,  // of the triangles'
-  parameter bit Exact = 1'b0,  // triangles have ranks, and some are for exact_resolver
+  parameter int unsigned NodeLines     = 256,  // lines of the cache of nodes
+  parameter int unsigned TriangleLines = 256,  // lines of the cache of triangles
+  parameter bit Exact = 1'b0,  // lines have ranks; some are for exact_resolver
   parameter int unsigned Clocks = 1,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned ReadIdWidth = read_id_width(NodeLines, TriangleLines)
@@ -23,13 +22,13 @@ module memory_subsystem
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    invalidate_i,  // empties the caches: memory has changed
-  output logic                    outstanding_o,  // a line is on its way, or will be
-  // nodes asked for: one for each ray at most
+  output logic                    outstanding_o,  // a line is requested, or will be
+  // requests for nodes: one for each ray at most
   input  logic [RayWidth-1:0]     node_ctx_i,
   input  request_t                node_i,
-  // a node that may be asked for soon: a prefetch
+  // a request for a node that may be needed soon: a prefetch
   input  request_t                prefetch_i,
-  // triangles asked for
+  // requests for triangles
   input  logic [RayWidth-1:0]     triangle_ctx_i,
   input  triangle_request_t       triangle_i,
   output logic                    triangle_ready_o,
@@ -217,9 +216,9 @@ module memory_subsystem
   localparam int unsigned CountWidth = $clog2(NodeLines + TriangleLines + 1);
 
   logic [MissWidth:0] out;
-  logic out_ready, ask, ask_node, node_last_q;  // the last request was a node's
-  logic ask_q, done_q;  // counted a clock late
-  logic [CountWidth-1:0] lines_q;  // requested, and not in the caches yet
+  logic out_ready, ask, ask_node, node_last_q;  // node_last_q: the last was a node's
+  logic ask_q, done_q;  // events of the clock before
+  logic [CountWidth-1:0] lines_q;  // lines requested and not in a cache yet
 
   assign node_miss_ready     = out_ready & (~triangle_miss_valid | ~node_last_q);
   assign ask_node            = node_miss_valid & node_miss_ready;

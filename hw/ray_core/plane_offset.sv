@@ -1,11 +1,11 @@
-// A plane of a node's grid: plane_o = from_i + floor(q s / 256), or from_i - floor(q s / 256), for q of eight bits.
-// Latency: 1 clock from q_i and step_i: a register after the product; from_i and back_i come a clock later, and plane_o
-// with them.
+// A plane of a node's grid: from_i + floor(q_i s / 256) or, with back_i, from_i - floor(q_i s / 256); s is step_i.
+// Latency: 1 clock from q_i and step_i (a register after the product). from_i and back_i come a clock later, in the
+// clock in which plane_o is valid.
 //
-// Structural arithmetic is a carry-save tree of shifted s, a row for each bit of q, a register for its two words, and
-// one adder for all: the difference is computed as floor((256 from + 255 - q s) / 256). Behavioural is `*`.
+// Structural kinds: a carry-save tree with a row for each bit of q, a register for its two words, and one adder, which
+// computes the difference as floor((256 from + 255 - q s) / 256). Behavioural uses `*`.
 module plane_offset #(
-  parameter int unsigned Width = 33,  // of s
+  parameter int unsigned Width = 33,  // width of s
   parameter int unsigned PlaneWidth = 36,
   parameter int unsigned Arith = arith_pkg::Graded
 ) (
@@ -13,7 +13,7 @@ module plane_offset #(
   input  logic [7:0]            q_i,
   input  logic [Width-1:0]      step_i,
   input  logic [PlaneWidth-1:0] from_i,
-  input  logic                  back_i,  // minus
+  input  logic                  back_i,  // 1: subtract
   output logic [PlaneWidth-1:0] plane_o
 );
 

@@ -1,7 +1,7 @@
 // Fetch of primitives: asks for leaves' triangles, near leaves first. Throughput: a triangle a clock.
 //
-// Groups of leaves are served one at a time, in the order in which they came; a ray has at most one. If a leaf lies
-// beyond its ray's t_max when its turn comes, it and the leaves behind it are dropped, as they are no nearer.
+// Groups of leaves are served one at a time, in the order in which they came. A ray has at most one group here. A leaf
+// that lies beyond the ray's t_max at its turn is dropped with the rest of the group, which is no nearer.
 module primitive_fetch
   import ray_core_pkg::*;
 #(
@@ -15,8 +15,8 @@ module primitive_fetch
   input  group_t              box_group_i,
   input  logic [Children-1:0] box_leaf_i,
   output logic [RayWidth-1:0] t_max_ray_o,
-  input  logic [30:0]         t_max_i,  // of t_max_ray_o of the clock before
-  input  logic                ended_i,  // the same ray needs no more tests
+  input  logic [30:0]         t_max_i,  // t_max of t_max_ray_o of the clock before
+  input  logic                ended_i,  // the ray of t_max_i needs no more tests
   output logic [Rays-1:0]     leaf_pending_o,  // rays with a group here
   // requests for triangles
   output logic [RayWidth-1:0] triangle_ray_o,
@@ -53,7 +53,7 @@ module primitive_fetch
   logic valid_q;
   logic [RayWidth-1:0] ray_q;
   logic [Children-1:0] mask_q, lowest, remaining;
-  logic [LeafWidth-1:0] number_q;  // of the triangle in its leaf
+  logic [LeafWidth-1:0] number_q;  // number of the triangle in its leaf
   logic [ChildWidth-1:0] entry;
   logic beyond, fire, last, done;
 

@@ -1,11 +1,11 @@
 // Entry of rays: reciprocals of a ray's direction, and a context.
 //
-// A ray waits in a queue until its reciprocals have come, a division's latency later, and a context is free: the
-// lowest free one is start_ctx_o. So no context is held during a division. Reciprocals are rounded to nearest.
-// Throughput: a ray in Clocks clocks; with Clocks = 1 by three dividers, else (7 or more) by one.
+// A ray waits in a queue for its reciprocals, a division's latency, and then for a context: start_ctx_o is the lowest
+// free one. So no context is held during a division. Reciprocals are rounded to nearest.
+// Throughput: a ray in Clocks clocks; with three dividers if Clocks is 1, else (7 or more) with one.
 module ray_alloc #(
-  parameter int unsigned Rays  = 64,  // contexts
-  parameter int unsigned Width = 32,  // of a ray's data, without the reciprocals
+  parameter int unsigned Rays  = 64,  // number of contexts
+  parameter int unsigned Width = 32,  // width of a ray's data, without the reciprocals
   parameter int unsigned Clocks = 1,
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
@@ -94,7 +94,7 @@ module ray_alloc #(
     assign inverse       = quotients;
     assign divided       = dividing_q[Latency-1];
   end else begin : gen_turns
-    logic [Clocks-2:0] since_q;  // clocks since a vector was taken
+    logic [Clocks-2:0] since_q;  // [n]: a vector was taken n + 1 clocks ago
     logic [95:0] words_q;
     logic [63:0] earlier_words_q;
     logic [1:0] earlier_q;  // quotients of the vector that have come

@@ -1,16 +1,16 @@
 // Ray core: traces rays through a tree of boxes in memory. Rays go in; out come their nearest hits or, without Exact,
 // their nearest certain hits and the tests that binary32 could not decide (doubts).
 //
-//   ray_alloc         computes a ray's reciprocals and gives it a context     ray_retire      detects that it has ended
-//   traversal         its stack; picks the ray that visits its next node      box_unit        which children it enters
-//   primitive_fetch   asks for the triangles of the leaves it enters          triangle_test   hit, miss or doubt
-//   closest_hit       its nearest hit and t_max, its doubts                   exact_resolver  decides the doubts
+//   ray_alloc         reciprocals of a ray's direction, and its context    ray_retire      detects that a ray has ended
+//   traversal         stacks of rays; picks a ray to visit its next node   box_unit        which children a ray enters
+//   primitive_fetch   requests the triangles of leaves that a ray enters   triangle_test   hit, miss or doubt
+//   closest_hit       a ray's nearest hit, t_max and doubts                exact_resolver  decides the doubts
 //   memory_subsystem  the caches of nodes and triangles
 //
 // Rays and results: valid/ready. A ray's direction must be scaled so that its largest component is in [1, 2). Hits at
 // t >= t_max (compared exactly), on triangle skip_id and on source_id, the triangle that the ray leaves, do not count.
-// With any_hit a ray ends at its first certain hit. Results of different rays interleave, each with its ray's tag,
-// and rays end in any order: see result_e. A ray's end with an error has no other data: see error_e.
+// With any_hit a ray ends at its first certain hit. Results of different rays interleave, each with its ray's tag, and
+// rays end in any order: see result_e. If a ray's end has an error, its other data are invalid: see error_e.
 //
 // Memory: reads of lines by number, valid/ready, each with an id; lines return with their id in any order, valid/ready.
 // A line with line_error_i fails the rays that wait for it, and is read again for the next ray. As nodes are
@@ -22,10 +22,10 @@ module ray_core
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays  = 64,  // contexts; a power of two
-  parameter int unsigned Depth = 8,   // groups on a ray's own stack
-  parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
-  parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
-  parameter int unsigned Clocks = 1,  // per node and triangle: 1, or with shared cores 7 or more
+  parameter int unsigned Depth = 8,   // groups (see traversal) on a ray's own stack
+  parameter int unsigned NodeLines     = 256,  // lines of the cache of nodes; a power of two
+  parameter int unsigned TriangleLines = 256,  // lines of the cache of triangles; a power of two
+  parameter int unsigned Clocks = 1,  // clocks per node and triangle: 1, or 7 or more
   parameter int unsigned Exact = 0,  // number of exact_units, which need ranks; 0: doubts leave
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays),
@@ -36,7 +36,7 @@ module ray_core
   input  logic                    invalidate_i,  // memory has changed: see above
   output logic                    outstanding_o,
   input  logic                    abort_i,  // ends the rays in the core
-  input  logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
+  input  logic [AddressWidth-1:0] lines_i,  // number of memory's lines; 0: 2**AddressWidth
   input  logic                    ray_valid_i,
   output logic                    ray_ready_o,
   input  ray_t                    ray_i,
@@ -52,11 +52,11 @@ module ray_core
   input  logic [ReadIdWidth-1:0]  line_id_i,
   input  logic [LineWidth-1:0]    line_i,
   input  logic                    line_error_i,
-  output logic [NumEvents-1:0]    events_o  // of the clock before, see event_e
+  output logic [NumEvents-1:0]    events_o  // events of the clock before, see event_e
 );
 
-  // ---- Rays that start, and their contexts: a ray's data for a node, a triangle or a test come a clock after they
-  // were asked for
+  // ---- Rays that start, and their contexts: the data of a ray for a node, a triangle or a test come from memories, a
+  // clock after the number of its context
 
   logic start_valid, start_fire, ending, step;
   logic [RayWidth-1:0]
@@ -177,7 +177,7 @@ module ray_core
     .boxes_o(boxes)
   );
 
-  // ---- Requests for triangles, first for doubts; tests of the lines that come
+  // ---- Requests for triangles (those of exact_resolver have priority), and tests of the lines that come
 
   logic [RayWidth-1:0] fetch_ctx, leaf_ctx, exact_ctx, triangle_ctx, verdict_ctx;
   logic [30:0] leaf_t_max;
@@ -331,8 +331,8 @@ module ray_core
     .result_o
   );
 
-  // ---- Errors: the first of each ray. A ray counts as failed two clocks after its error, at the latest when its end
-  // is reported, until another ray starts in its context. While abort_i is high, all rays in the core fail.
+  // ---- Errors: the first error of each ray. A ray counts as failed two clocks after its error, at the latest when its
+  // end is reported, until another ray starts in its context. While abort_i is high, all rays in the core fail.
 
   logic [Rays-1:0][2:0] errors_q;
   logic node_error_q, triangle_error_q, cycle_q;

@@ -1,10 +1,10 @@
 // Ray core on AXI4, with registers on AXI4-Lite. Rays come by valid/ready, results leave by AXI4 or AXI4-Stream.
 //
-//   csr                what to draw, counters, flags
-//   ray_generator      the rays of a rectangle; the tag of each is its pixel, {y, x}
+//   csr                registers: what to draw, counters, flags
+//   ray_generator      the rays of a rectangle; a ray's tag is its pixel, {y, x}
 //   ray_core
-//   axi_read_manager   its memory port
-//   axi_write_manager  results to memory if register `length` is not 0; else they leave by the stream
+//   axi_read_manager   the core's memory port
+//   axi_write_manager  results to memory if register `length` is not 0; else results leave by the stream
 //
 // AxPROT and AxCACHE are constant. By default accesses are non-secure, unprivileged, to data; memory is normal, not
 // cacheable, bufferable, so bridges may merge beats. Writes have ID 0. The user's rays (ray_*) wait while a rectangle
@@ -18,7 +18,7 @@ module ray_core_axi
   parameter int unsigned TriangleLines = 256,
   parameter int unsigned Clocks = 1,
   parameter int unsigned Exact = 0,
-  parameter int unsigned DataWidth = 128,  // of the AXI4 port
+  parameter int unsigned DataWidth = 128,  // width of the AXI4 port, in bits
   parameter int unsigned IdWidth   = 6,
   parameter bit [2:0] AxProt  = 3'b010,
   parameter bit [3:0] AxCache = 4'b0011,
@@ -83,7 +83,7 @@ module ray_core_axi
   input  logic                   m_axi_bvalid,
   output logic                   m_axi_bready,
   // verilator lint_off UNUSEDSIGNAL
-  input  logic [IdWidth-1:0]     m_axi_bid,  // 0
+  input  logic [IdWidth-1:0]     m_axi_bid,  // always 0
   // verilator lint_on UNUSEDSIGNAL
   input  logic [1:0]             m_axi_bresp,
   // results: AXI4-Stream, one per transfer, see registers.md
@@ -120,7 +120,7 @@ module ray_core_axi
   logic [31:0] corner, size;
   logic [4*96-1:0] camera;
   logic [NumEvents-1:0] events;
-  logic [31:0] in_flight_q;  // rays taken whose end has not left
+  logic [31:0] in_flight_q;  // number of rays taken whose end has not left
 
   assign result_fire = result_valid & result_ready;
   assign is_doubt    = result_fire & (result.kind == ResultDoubt);
@@ -202,11 +202,11 @@ module ray_core_axi
     .pixel_o(pixel)
   );
 
-  // ---- Rays: the generator's first
+  // ---- Rays: those of the generator have priority
 
   ray_t generated;
   logic core_ready, core_valid, ray_fire;
-  logic closed_q;  // to the user's rays, except one that is already offered
+  logic closed_q;  // the user's rays wait, except one that is already offered
   assign core_valid   = camera_valid | (ray_valid_i & ~closed_q);
   assign camera_ready = core_ready;
   assign generated = {

@@ -1,21 +1,19 @@
 // Shared by the parts of the ray core: the lines of its memory, rays, results.
 //
-// Memory is read in lines of 64 bytes, by number: line n is at byte 64 n. Bit fields are given from bit 0,
-// the lowest bit of a line's first byte.
+// Memory is read in lines of 64 bytes, by number: line n is at byte 64 n. Bit 0 is the lowest bit of the first byte.
 package ray_core_pkg;
 
   // verilator lint_off UNUSEDPARAM
   // No top module uses everything.
 
   localparam int unsigned LineWidth = 512;
-  localparam int unsigned AddressWidth = 28;  // of a line: 16 GiB
+  localparam int unsigned AddressWidth = 28;  // width of a line's number: 16 GiB of memory
 
   // ---- Node line: up to seven children and their boxes
   //
-  // A box is given on the node's own grid: along axis k, q is the coordinate origin_k + q 2**(e_k - 127),
-  // exactly, with q from 0 to 255. A box holds all of its child's triangles (closed: they may touch it).
-  // The children's lines follow each other, starting at line `base` with child 0's: one line of an inner node, or as
-  // many triangle lines as the leaf has.
+  // A box is given on the node's own grid: along axis k, q (0 to 255) is the coordinate origin_k + q 2**(e_k - 127),
+  // exactly. A box contains all of its child's triangles, which may touch its faces. The children's lines are
+  // consecutive from line `base`, child 0 first: one line for an inner node, or one line for each triangle of a leaf.
 
   localparam int unsigned Children = 7;
   localparam int unsigned NodeOrigin = 0;  // three binary32, finite
@@ -25,27 +23,27 @@ package ray_core_pkg;
   localparam int unsigned NodeBoxes = 176;  // 48 bits per child: low x, y, z, high x, y, z
   localparam int unsigned KindWidth = 4;
   localparam int unsigned BoxWidth = 48;
-  localparam logic [KindWidth-1:0] KindAbsent = 4'd0;  // 1 to 7: a leaf of so many triangles
+  localparam logic [KindWidth-1:0] KindAbsent = 4'd0;  // 1 to 7: a leaf of that many triangles
   localparam logic [KindWidth-1:0] KindInner = 4'd8;
-  localparam int unsigned MaxLevels = 48;  // nodes on a path from the root to a leaf, at most
+  localparam int unsigned MaxLevels = 48;  // maximum number of nodes from the root to a leaf
 
   // ---- Triangle line
 
   localparam int unsigned TriangleCorners = 0;  // nine binary32: A.x, A.y, A.z, B.x, ... C.z
-  localparam int unsigned TriangleIndex = 288;  // 32 bits, the id; with Exact this line's number
+  localparam int unsigned TriangleIndex = 288;  // 32 bits: the id; with Exact, this line's number
   localparam int unsigned TriangleRank = 320;  // 32 bits; with Exact, the lowest wins at equal t
 
-  localparam int unsigned TriangleWidth = 320;  // bits used of the line, without the rank
+  localparam int unsigned TriangleWidth = 320;  // used bits of the line, without the rank
   localparam int unsigned RankWidth = 32;
 
   // ---- box_unit's result for a node: a group of children
   //
-  // Children that the ray enters, near first: entry 0 is the nearest. An entry's `enter` is a lower bound of the t
-  // where the ray enters the box: the upper bits of a binary32 number without its sign; all ones if t overflows.
+  // Children that the ray enters, near first: entry 0 is the nearest. `enter` of an entry is a lower bound of the t
+  // where the ray enters the box: the upper bits of a binary32 number without its sign, all ones if t overflows.
 
   localparam int unsigned EnterWidth = 19;
-  localparam int unsigned OffsetWidth = 6;  // of a child's first line from `base`: below 7 * 7
-  localparam int unsigned LeafWidth = 3;  // of a leaf's triangles; 0: an inner node
+  localparam int unsigned OffsetWidth = 6;  // child's first line less `base`: below 7 * 7
+  localparam int unsigned LeafWidth = 3;  // number of a leaf's triangles; 0: an inner node
   // {enter, offset, count}
   localparam int unsigned ChildWidth = EnterWidth + OffsetWidth + LeafWidth;
   localparam int unsigned GroupWidth = AddressWidth + Children * ChildWidth;
@@ -55,24 +53,23 @@ package ray_core_pkg;
     logic [Children*ChildWidth-1:0] entries;
   } group_t;
 
-  // Whether a child surely begins beyond t_max, a binary32 number without its sign. Such numbers have the order of
-  // their bits.
+  // Returns whether a child certainly begins beyond t_max, binary32 without its sign. (Such words compare as integers.)
   function automatic logic is_beyond(logic [EnterWidth-1:0] enter, logic [30:0] t_max);
     is_beyond = t_max < {enter, {31 - EnterWidth{1'b0}}};
   endfunction
 
-  // Clocks from the edge that takes a node to the edge after which its group is there, see box_unit.
+  // Clocks from the edge that takes a node to the edge after which its group is at the output, see box_unit.
   localparam int unsigned BoxLatency = 21;
 
-  // ---- Numbers inside box_unit, in units of 2**(E - UnitBits); the ray ends, or leaves the node, before t = 2**E
+  // ---- Numbers inside box_unit, in units of 2**(E - UnitBits); in the node, t is below 2**E
 
   localparam int unsigned UnitBits = 22;
-  localparam int unsigned StepWidth = 33;  // of s, up to 2**32, in 256ths of a unit
-  localparam int unsigned PlaneWidth = 36;  // of planes, two's complement
+  localparam int unsigned StepWidth = 33;  // width of s, up to 2**32, in 256ths of a unit
+  localparam int unsigned PlaneWidth = 36;  // width of planes, two's complement
 
-  typedef struct packed {  // of a ray in a node; words and bits by axis, x lowest
-    logic [8:0]  exponent;   // E
-    logic [95:0] inverse;    // 1 / I_k, but at most the cap 2**(E + 2 - e_k); with its sign
+  typedef struct packed {  // values of a ray in a node; words and bits by axis, x lowest
+    logic [8:0]  exponent;   // the exponent E, with binary32's bias
+    logic [95:0] inverse;    // 1 / I_k with its sign, limited to the cap 2**(E + 2 - (e_k - 127))
     logic [32:0] caps;       // the exponents of the caps, 11 signed bits each
     logic [2:0]  is_capped;  // the inverse is the cap
     logic [2:0]  is_open;    // binary32 cannot represent the cap: the axis is ignored
@@ -80,7 +77,7 @@ package ray_core_pkg;
 
   // ---- A ray, as the user gives it
 
-  localparam logic [30:0] Infinity = 31'h7f80_0000;  // a t_max: no limit
+  localparam logic [30:0] Infinity = 31'h7f80_0000;  // as t_max: no limit
 
   typedef struct packed {
     logic [95:0]             origin;     // binary32, x lowest
@@ -99,18 +96,18 @@ package ray_core_pkg;
     ResultDoubt = 1'd1   // a triangle that may be the nearest hit: exact arithmetic must decide
   } result_e;
 
-  localparam int unsigned TestsWidth = AddressWidth;  // a ray tests each triangle line once
+  localparam int unsigned TestsWidth = AddressWidth;  // a ray tests a triangle line once at most
 
-  // Why a ray's hits are invalid
+  // The reason why a ray's hits are invalid
   typedef enum logic [2:0] {
     ErrorNone      = 3'd0,
-    ErrorMemory    = 3'd1,  // one of its lines came with an error
-    ErrorCycle     = 3'd2,  // it meets a node again, or a node below Levels others: see traversal
-    ErrorDirection = 3'd3,  // its direction is not scaled
-    ErrorAbort     = 3'd4   // the user aborted it
+    ErrorMemory    = 3'd1,  // one of the ray's lines came with an error
+    ErrorCycle     = 3'd2,  // the ray is in a cycle of nodes, or in too deep a tree: see traversal
+    ErrorDirection = 3'd3,  // the ray's direction is not scaled
+    ErrorAbort     = 3'd4   // the user aborted the ray
   } error_e;
 
-  // Whether the largest component of a direction is in [1, 2).
+  // Returns whether the largest component of a direction is in [1, 2).
   function automatic logic is_scaled(logic [95:0] direction);
     is_scaled = (direction[30:23] == 8'd127) || (direction[62:55] == 8'd127)
              || (direction[94:87] == 8'd127);
@@ -120,27 +117,27 @@ package ray_core_pkg;
   endfunction
 
   localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth;
-  localparam logic [TErrorWidth-1:0] NoT = '1;  // of a hit whose t and P are not known
+  localparam logic [TErrorWidth-1:0] NoT = '1;  // t_error of a hit whose t and P are not known
 
   typedef struct packed {
     logic                    kind;      // result_e
     logic [31:0]             tag;
-    logic                    found;     // fields down to tests are for ResultEnd; a sure hit exists
+    logic                    found;     // a sure hit exists; it and the next fields: for ResultEnd
     logic [31:0]             triangle;  // for ResultDoubt: the triangle in doubt
     logic [31:0]             t;
-    logic [TErrorWidth-1:0]  t_error;   // t is off by fewer than 2**t_error numbers, see NoT
+    logic [TErrorWidth-1:0]  t_error;   // log2 of a bound of t's error, see set_up_pkg; or NoT
     logic [95:0]             point;
     logic [TestsWidth-1:0]   tests;
     logic [2:0]              error;     // ResultEnd: error_e
   } result_t;
 
-  // Bits of a read's id: {is a triangle's, entry of its cache}.
+  // Returns the bits of a read's id: {1 for a triangle's line, entry of its cache}.
   function automatic int unsigned read_id_width(int unsigned node_lines,
                                                 int unsigned triangle_lines);
     read_id_width = 1 + $clog2((node_lines > triangle_lines) ? node_lines : triangle_lines);
   endfunction
 
-  // ---- Links between the parts of the core; each comes with the number of a ray's context
+  // ---- Links between the parts of the core; the number of a ray's context comes with each
 
   typedef struct packed {  // a request for a line
     logic                    valid;
@@ -149,7 +146,7 @@ package ray_core_pkg;
 
   typedef struct packed {  // a request for a triangle's line
     logic                    valid;
-    logic                    exact;  // for exact_resolver; else for a test
+    logic                    exact;  // 1: for exact_resolver; 0: for a test
     logic [AddressWidth-1:0] line;
   } triangle_request_t;
 
@@ -170,14 +167,14 @@ package ray_core_pkg;
   typedef struct packed {  // which children of a node a ray enters
     logic                valid;
     group_t              group;
-    logic [Children-1:0] inner;  // entries that are nodes,
-    logic [Children-1:0] leaf;   // and leaves
+    logic [Children-1:0] inner;  // entries that are inner nodes
+    logic [Children-1:0] leaf;   // entries that are leaves
   } boxes_t;
 
   // The result of a test: a doubt, a sure hit (found) or a miss
   typedef struct packed {
     logic                                   valid;
-    logic                                   is_skipped;  // the test does not count
+    logic                                   is_skipped;  // the ray ignores the triangle
     logic                                   doubt;
     logic                                   found;
     logic [31:0]                            triangle;
@@ -210,15 +207,15 @@ package ray_core_pkg;
 
   typedef struct packed {  // a doubt that closest_hit passes to exact_resolver
     logic                    valid;
-    logic                    is_hit;  // surely; else the ray may miss it
+    logic                    is_hit;  // 1: certainly a hit; 0: the ray may miss it
     logic [AddressWidth-1:0] line;
   } open_t;
 
   typedef struct packed {  // what closest_hit tells exact_resolver of a ray
     logic                    ended;  // the ray needs no further hit
-    logic                    found;  // there is a sure hit, in `line`
+    logic                    found;  // there is a sure hit, on the triangle of `line`
     logic [AddressWidth-1:0] line;
-    logic [30:0]             t_max;  // without a sure hit: the user's
+    logic [30:0]             t_max;  // if found is 0, the user's t_max
   } known_t;
 
   // ---- Events of a clock, for counters
@@ -227,12 +224,12 @@ package ray_core_pkg;
     EventRay      = 4'd0,  // a ray has ended
     EventNode     = 4'd1,  // box_unit takes a node
     EventTriangle = 4'd2,  // triangle_test takes a triangle
-    EventHit      = 4'd3,  // a test ends: a sure hit,
-    EventMiss     = 4'd4,  // a sure miss, or a triangle that the ray ignores,
-    EventDoubt    = 4'd5,  // or neither
-    EventNearTie  = 4'd6,  // a sure hit leaves as a doubt
-    EventOverflow = 4'd7,  // a ray's own stack is full: it takes the shared groups
-    EventRead     = 4'd8,  // a line is asked for
+    EventHit      = 4'd3,  // a test ends with a sure hit
+    EventMiss     = 4'd4,  // a test ends with a sure miss, or on a triangle that the ray ignores
+    EventDoubt    = 4'd5,  // a test ends with a doubt
+    EventNearTie  = 4'd6,  // a sure hit becomes a doubt, as another hit may be as near
+    EventOverflow = 4'd7,  // a ray whose own stack is full takes the shared groups
+    EventRead     = 4'd8,  // a line is requested from memory
     EventWait     = 4'd9,  // memory does not take a read
     EventExact    = 4'd10  // exact_unit has a question
   } event_e;

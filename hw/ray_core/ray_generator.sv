@@ -1,9 +1,9 @@
 // Generator of camera rays: a rectangle of pixels, row by row. The paper's equation 1.
 //
 // The direction through pixel (x, y) is (first + y down) + x right, binary32, each operation rounded to nearest: first
-// is the direction through pixel (0, 0), right and down lead from a pixel to the next. The direction is then scaled by
-// a power of two, so that the largest component is in [1, 2); a component that becomes smaller than 2**-126 is zero. A
-// direction that is zero or not finite cannot be scaled: the core refuses it. Vectors are three words, x lowest.
+// is the direction through pixel (0, 0), right and down are the steps to the next column and row. The direction is then
+// scaled by a power of two, so that the largest component is in [1, 2). A component that becomes smaller than 2**-126
+// is zero. The core refuses a direction that cannot be scaled: zero or not finite. Vectors are three words, x lowest.
 //
 // start_i, while not busy_o, takes the rectangle; a width or height of zero gives no ray. stop_i: no further pixel is
 // begun. Throughput: a ray a clock.
@@ -68,7 +68,7 @@ module ray_generator #(
 
   // ---- The pixel's numbers as binary32, exactly
 
-  logic [31:0] number_q[2];  // x, y
+  logic [31:0] number_q[2];  // x and y as binary32
 
   for (genvar n = 0; n < 2; n++) begin : gen_number
     logic [15:0] count, normalised;  // the highest bit only adds to the exponent
@@ -150,7 +150,7 @@ module ray_generator #(
   end
   assign unit = (largest == 8'd255) ? 8'd255 : 8'd127;
   for (genvar k = 0; k < 3; k++) begin : gen_scaled
-    logic [7:0] below;  // binary orders below the largest
+    logic [7:0] below;  // difference to the largest exponent
     assign below = largest - direction[32*k+23 +: 8];
     assign scaled[32*k +: 32] = ((direction[32*k+23 +: 8] == '0) | (below > 8'd126))
         ? {direction[32*k+31], 31'd0} : {direction[32*k+31], unit - below, direction[32*k +: 23]};

@@ -1,8 +1,8 @@
 // Exit of rays: detects that a ray has ended, and queues results.
 //
 // A ray has ended when it has no node, no leaf, no test and no doubt left. Its context is free at once; its nearest hit
-// waits in a queue. A ray's doubts leave before its end. Unused fields are zero: a doubt has only its tag and triangle,
-// an end without a hit no triangle, t, t_error or P. Throughput: a ray and a result a clock.
+// waits in a queue. A ray's doubts leave before its end. Unused fields of a result are zero: a doubt has only tag and
+// triangle; the end of a ray without a hit has no triangle, t, t_error or P. Throughput: a ray and a result a clock.
 module ray_retire
   import ray_core_pkg::*;
 #(
@@ -11,7 +11,7 @@ module ray_retire
 ) (
   input  logic                clk_i,
   input  logic                rst_ni,
-  input  logic                start_i,  // a ray is in a context
+  input  logic                start_i,  // a ray enters the context start_ctx_i
   input  logic [RayWidth-1:0] start_ctx_i,
   input  logic [Rays-1:0]     busy_i,  // contexts whose ray has work left
   // a ray ends and its context is free; its data come in the next clock
@@ -55,7 +55,7 @@ module ray_retire
     end
   end
 
-  // ---- The ray's data wait
+  // ---- Queue of the data of rays that have ended
 
   logic known_q, end_valid, end_fire;
   end_t ended;

@@ -1,6 +1,6 @@
-// Scale of a ray in a node: 2**E, a bound of t there, and a cap of 1 / I_k if planes are too far apart.
-// Latency: 2 clocks: registers after the reach along each axis and after E. All inputs come in the same clock. For the
-// reasons see steps 1 and 3 of box_unit's header. Exponents have binary32's bias.
+// Scale of a ray in a node: 2**E, a bound of t there, and caps of 1 / I_k for planes that are too far apart.
+// Latency: 2 clocks: registers after the reach along each axis and after E. All inputs come in the same clock. Steps 1
+// and 3 of box_unit's header derive the formulas. Exponents have binary32's bias.
 //
 // In:  distances_i  exponents of D_k = origin_k - O_k, eight bits per axis, x lowest
 //      inverse_i    1 / I_k, binary32, x lowest

@@ -12,11 +12,11 @@ package set_up_pkg;
 
   localparam int unsigned PlaneErrorWidth = 4;
 
-  // The largest error (log2) of a good plane, alone or with the test's t_error added.
+  // Limit of normal_error and distance_error of a usable plane, and of t_error + normal_error of a usable hit.
   localparam int unsigned MostPlaneError = 14;
 
-  // If is_good_hit, fewer than 2**t_error_exponent numbers lie between a hit's t and the exact t. t_error is
-  // hit_decision's, the other errors are the plane's.
+  // For a hit with is_good_hit, fewer than 2**t_error_exponent binary32 numbers lie between its t and the exact t.
+  // t_error is hit_decision's; the other errors are plane_of's.
   localparam int unsigned TErrorUnit = 8;
   localparam int unsigned TErrorExponentWidth = 5;
 
@@ -34,13 +34,13 @@ package set_up_pkg;
     t_error_exponent = TErrorExponentWidth'(TErrorUnit) + ((plane > distance) ? plane : distance);
   endfunction
 
-  // ---- Derived in the header of triangle_test, from sums and exponents
+  // ---- Bounds; the header of triangle_test derives them
 
   localparam int unsigned LeastField = 27;  // smallest exponent field that is not tiny: 2**-100
-  localparam int unsigned BoundShift = 20;  // 16 u = 2**-20
+  localparam int unsigned BoundShift = 20;  // 16 u = 2**-20, with u = 2**-24
   localparam logic [Width-1:0] NaN = {1'b0, {ExpWidth{1'b1}}, 1'b1, {(FracWidth - 1) {1'b0}}};
 
-  // An edge's bound: 16 u T' if T', the sum of its terms, is neither tiny nor infinite; else infinity.
+  // Returns an edge's bound: 16 u T', or infinity if T' (`sum`), the sum of its terms, is tiny or infinite.
   function automatic logic [Width-1:0] bound(logic [Width-1:0] sum);
     logic [ExpWidth-1:0] field;
     field = sum[FracWidth+:ExpWidth];
@@ -49,7 +49,7 @@ package set_up_pkg;
         : {1'b0, {ExpWidth{1'b1}}, {FracWidth{1'b0}}};
   endfunction
 
-  // The largest exponent of a vector's components.
+  // Returns the largest exponent field of a vector's components.
   // verilator lint_off UNUSEDSIGNAL
   function automatic logic [ExpWidth-1:0] largest(logic [3*Width-1:0] vector);
     // verilator lint_on UNUSEDSIGNAL
@@ -67,7 +67,7 @@ package set_up_pkg;
     logic [PlaneErrorWidth-1:0] distance_error;
   } plane_t;
 
-  // The plane's errors, from the largest exponents of A, N and N's terms, and from d's exponent.
+  // Returns the plane's errors, from the largest exponent fields of A (`vertex`), N and N's terms, and from d's.
   function automatic plane_t plane_of(logic [ExpWidth-1:0] vertex, logic [ExpWidth-1:0] normal,
                                       logic [ExpWidth-1:0] terms, logic [ExpWidth-1:0] d);
     localparam logic [ExpWidth+1:0] Bias = (ExpWidth + 2)'(2 ** (ExpWidth - 1) - 1);

@@ -1,10 +1,10 @@
 // Slab set-up: bounds of a grid's first plane, and the step.
-// Latency: 1 clock; |a| and s are registered. All in units of 2**(E - 22); steps 2 to 4 of box_unit's header say why.
+// Latency: 1 clock; |a| and s are registered. Units are 2**(E - 22). Box_unit's header derives the formulas (2 to 4).
 //
-// In:  product_i    a = D / I, binary32; any
-//      inverse_i    1 / |I|, capped; exponent_i, cap_i: E and the cap's exponent, with binary32's bias
-//      is_capped_i  the inverse was above the cap; is_open_i: it was, and binary32 cannot represent the cap
-// Out: planes_o     a - r, lowest, and a + r, two's complement; step_o: s in 256ths of a unit
+// In:  product_i    a = D / I, binary32, any value
+//      inverse_i    1 / |I|, limited to the cap; exponent_i, cap_i: E and the cap's exponent, with binary32's bias
+//      is_capped_i  the inverse was above the cap; is_open_i: in addition, binary32 cannot represent the cap
+// Out: planes_o     a - r, lowest, and a + r, two's complement, in units; step_o: s in 256ths of a unit
 module slab_setup
   import ray_core_pkg::*;
 #(
@@ -21,7 +21,7 @@ module slab_setup
   output logic [StepWidth-1:0]       step_o
 );
 
-  localparam int unsigned SizeWidth = 34;  // of |a|, up to 2**33
+  localparam int unsigned SizeWidth = 34;  // width of |a|, up to 2**33 units
   localparam logic [PlaneWidth-1:0] Far = PlaneWidth'(1) << 33;
 
   logic [7:0] product_field, inverse_field;
@@ -44,7 +44,7 @@ module slab_setup
     is_capped_q    <= is_capped_i;
   end
 
-  // ---- r: rounding errors, and 2**E for a ray that hardly moves along this axis
+  // ---- r: a bound of rounding errors, plus 2**E for a ray that hardly moves along this axis
 
   logic [11:0] few;
   assign few  = size_q[SizeWidth-1:22] + 12'(step_q[StepWidth-1:24]) + 12'd6;

@@ -1,12 +1,12 @@
 // Slab test: whether and where the ray enters one child's box. Vectors have x lowest.
 // Latency: 4 clocks: registers after products, planes, the largest and smallest of them, and the key.
 //
-// In:  box_i         low x, y, z, high x, y, z: a byte each; step_i: s; back_i: along which axes the ray goes towards
-//                    smaller q
-//      next_planes_i, next_back_i  a clock later: near planes, far planes; and back_i
-//      t_max_i       in units, two clocks later; no box is entered beyond it
-//      kind_i        ray_core_pkg's, three clocks later
-// Out: key_o         {left out, enter}: enter in units, up to 2**22
+// In:  box_i         low x, y, z, high x, y, z: a byte each; step_i: s; back_i: 1 for each axis along which the ray
+//                    goes towards smaller q
+//      next_planes_i, next_back_i  a clock later: the planes at q = 0, near ones and far ones; and back_i again
+//      t_max_i       in units, two clocks later: no box is entered beyond this t
+//      kind_i        the child's kind (ray_core_pkg), three clocks later
+// Out: key_o         {not entered, enter}: enter is a lower bound of the t of entry, in units, up to 2**22
 module slab_test
   import ray_core_pkg::*;
 #(
@@ -61,7 +61,7 @@ module slab_test
   // ---- Enter: the largest near plane; leave: the smallest far one
 
   // verilator lint_off UNUSEDSIGNAL
-  // An enter within the t_max has no more than UnitBits + 1 bits.
+  // An enter of at most t_max has no more than UnitBits + 1 bits.
   plane_t enter_q, leave_q;
   // verilator lint_on UNUSEDSIGNAL
 

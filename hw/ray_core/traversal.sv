@@ -1,31 +1,31 @@
 // Traversal of the tree: short stacks, and which ray goes next.
 //
 // A stack entry is a group: the children of a node that a ray enters and has not visited yet, the nearest on top. In
-// each clock one ray is picked, of those that neither wait for a node nor have leaves to be fetched. Its groups whose
-// nearest child lies beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for.
-// Rays without tests in flight come first, as their t_max is final for now; among these is a ray that starts.
+// each clock one ray is picked, of those that neither wait for a node nor have leaves to be fetched. The ray's groups
+// are dropped if their nearest child lies beyond t_max. Then the nearest child of its topmost group is requested. Rays
+// without tests in flight have priority, as their t_max is final for now; so has a ray that starts.
 //
-// Each ray has Depth groups of its own. Levels - Depth more are shared by all rays. One ray at a time holds the shared
-// groups, on top of its own, from when it asks for a node with its own stack full until its own stack has room again;
-// overflow_o is high when a ray takes them. Other rays that need them wait; the holder depends on no other ray, so each
-// gets its turn. Only the topmost shared group is examined. It is never dropped for t_max, as box_unit culls boxes
-// beyond t_max.
+// Each ray has Depth groups of its own. Levels - Depth more groups are shared, held by one ray at a time on top of its
+// own. A ray takes the shared groups when it requests a node with its own stack full, and overflow_o is high. It holds
+// them until its own stack has room again. Other rays that need them wait. The holder waits for no other ray, so each
+// ray gets its turn. Only the topmost shared group is examined. It is not dropped for t_max, as box_unit leaves out
+// boxes beyond t_max.
 //
 // In a tree a ray enters each node once, and has at most one group for each level. A ray that is about to enter more
-// than lines_i nodes, or has Levels groups, is in a cycle: its stack is dropped, and cycle_o is high.
+// than lines_i nodes, or that has Levels groups, is in a cycle: its stack is dropped, and cycle_o is high.
 //
 //   gather   the rays that may be picked
 //   pick     one of them
 //   read     its groups and its t_max
 //   choose   the group
 //   fetch    the group from memory
-//   ask      for the line of its nearest child or, in a clock without one, for the root, on behalf of a ray that starts
+//   ask      request the line of its nearest child or, in a clock without a group, the root's for a ray that starts
 module traversal
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,  // groups on a ray's own stack
-  parameter int unsigned Levels = MaxLevels,  // including the shared groups
+  parameter int unsigned Levels = MaxLevels,  // maximum number of groups, with the shared ones
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                    clk_i,
@@ -39,16 +39,16 @@ module traversal
   input  logic [RayWidth-1:0]     box_ray_i,
   input  group_t                  box_group_i,
   input  logic [Children-1:0]     box_inner_i,
-  // what is known of rays
-  input  logic [Rays-1:0]         leaf_pending_i,  // has leaves to be asked for
-  input  logic [Rays-1:0]         testing_i,  // has tests in flight
+  // state of rays
+  input  logic [Rays-1:0]         leaf_pending_i,  // rays that have leaves to be fetched
+  input  logic [Rays-1:0]         testing_i,  // rays that have tests in flight
   output logic [RayWidth-1:0]     t_max_ray_o,
-  input  logic [30:0]             t_max_i,  // of t_max_ray_o of the clock before
-  input  logic                    ended_i,  // the same ray needs no more nodes
-  output logic                    cycle_o,  // cycle_ray_o meets a node again
+  input  logic [30:0]             t_max_i,  // t_max of t_max_ray_o of the clock before
+  input  logic                    ended_i,  // the ray of t_max_i needs no more nodes
+  output logic                    cycle_o,  // cycle_ray_o is in a cycle
   output logic [RayWidth-1:0]     cycle_ray_o,
-  input  logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
-  output logic [Rays-1:0]         traversing_o,  // waits for a node, or has some on its stack
+  input  logic [AddressWidth-1:0] lines_i,  // number of memory's lines; 0: 2**AddressWidth
+  output logic [Rays-1:0]         traversing_o,  // rays that wait for a node or have a group
   // requests for nodes; at most one for each ray
   output logic [RayWidth-1:0]     node_ray_o,
   output request_t                node_o,
@@ -67,15 +67,15 @@ module traversal
     $error("traversal: expected a Depth of 1 or more, and Levels of Depth + 2 or more");
   end
 
-  logic [LevelWidth-1:0] levels[Rays];  // groups on the stack
-  logic [AddressWidth-1:0] entered[Rays];  // nodes
-  logic [Rays-1:0] busy_q;     // waits for a node
-  logic [Rays-1:0] waiting_q;  // levels is not 0
-  logic [Rays-1:0] refused_q;  // waits for the shared groups
+  logic [LevelWidth-1:0] levels[Rays];  // number of groups on the ray's stack
+  logic [AddressWidth-1:0] entered[Rays];  // number of nodes entered
+  logic [Rays-1:0] busy_q;     // the ray waits for a node, or is picked
+  logic [Rays-1:0] waiting_q;  // the ray's levels is not 0
+  logic [Rays-1:0] refused_q;  // the ray waits for the shared groups
 
   assign traversing_o = busy_q | waiting_q;
 
-  // Address of a ray's group in u_groups; then, of a shared group in shared_masks.
+  // Return the address of a ray's group in u_groups, and the address of a shared group in shared_masks.
   function automatic logic [StackWidth-1:0] stack_address(logic [RayWidth-1:0] ctx,
                                                           logic [LevelWidth-1:0] level);
     stack_address = StackWidth'(level) + ((level < LevelWidth'(Depth))
@@ -85,7 +85,7 @@ module traversal
     shared_address = SharedWidth'(level - LevelWidth'(Depth));
   endfunction
 
-  // The nearest of the entries in `which`, as {enter, offset}; 0 for none.
+  // Returns the nearest of the entries in `which`, as {enter, offset}; 0 if `which` is 0.
   function automatic logic [EnterWidth+OffsetWidth-1:0] nearest(
     logic [Children*ChildWidth-1:0] entries, logic [Children-1:0] which);
     nearest = '0;
@@ -96,7 +96,7 @@ module traversal
     end
   endfunction
 
-  // ---- Gather: without the rays picked in this clock or the last
+  // ---- Gather: rays picked in this clock or the one before are left out
 
   logic [Rays-1:0] ready, sure, ready_q;
 
@@ -132,14 +132,14 @@ module traversal
     end
   end
 
-  // ---- Read: for each level of the stack, which entries wait, and the `enter` of the first
+  // ---- Read: for each level of the stack, the waiting entries of the group and the `enter` of the nearest
 
   logic push, asked_q, choosing_q, ended_q, next_valid_q;
   logic [LevelWidth-1:0] box_level, level_q, chosen, left, asked_level_q, next_level_q;
   logic [RayWidth-1:0] choosing_ray_q, asking_ray_q, next_ray_q;
   logic [AddressWidth-1:0] entered_q;
   logic [30:0] t_max_q;
-  logic [Depth-1:0] open;  // levels that have a child within the t_max
+  logic [Depth-1:0] open;  // levels whose nearest child is not beyond t_max
   logic [Children-1:0] shared_masks[Shared], shared_mask_q;
   logic [Depth*Children-1:0] masks;
   logic [Children-1:0] mask, remaining, mask_q, remaining_q, next_remaining_q;
@@ -168,7 +168,7 @@ module traversal
   end
 
   for (genvar d = 0; d < Depth; d++) begin : gen_level
-    logic [NextWidth-1:0] nexts[Rays];  // {mask, enter}
+    logic [NextWidth-1:0] nexts[Rays];  // {waiting entries, enter of the nearest of them}
     logic [NextWidth-1:0] next_q;
 
     always_ff @(posedge clk_i) begin
@@ -188,7 +188,7 @@ module traversal
 
   logic is_shared, some, full, shared_q, free;
   logic [RayWidth-1:0] shared_ray_q;
-  logic [Children-1:0] own_top;  // of a ray whose own stack is full
+  logic [Children-1:0] own_top;  // mask of the top of a full own stack
 
   assign is_shared = level_q > LevelWidth'(Depth);
   assign own_top   = masks[Children*(Depth-1) +: Children];
@@ -214,7 +214,7 @@ module traversal
                      & ((entered_q == lines_i) | (level_q == LevelWidth'(Levels)));
   assign cycle_ray_o = choosing_ray_q;
   assign left        = (~some | cycle_o) ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
-  // Equivalent to "left is Depth or more", but known earlier.
+  // Equivalent to `left` >= Depth, but available earlier.
   assign full        = ~cycle_o & (is_shared ? ~ended_q
                      : open[Depth-1] & ((own_top & (own_top - 1'b1)) != '0));
   assign free        = ~shared_q | (shared_ray_q == choosing_ray_q);
@@ -289,7 +289,7 @@ module traversal
     .data_o(group)
   );
 
-  // ---- State; picking, start and a node's result of one clock concern different rays
+  // ---- State; in one clock, picking, start and a node's result concern different rays
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

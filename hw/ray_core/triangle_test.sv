@@ -1,7 +1,8 @@
 // Triangle test: polygon record of a triangle, and a ray's verdict. The record is relative to the origin; binary32.
 //
-// Throughput: a triangle in Clocks clocks. Clocks = 1: pipelined cores. Else (7 or more) words share few cores: a step
-// lasts from one step_i to the next, and all registers advance with it. Results are the same. Nothing is stalled.
+// Throughput: a triangle in Clocks clocks. With Clocks = 1, cores are pipelined. Else (7 or more) words share few
+// cores: a step lasts from one step_i to the next, and registers advance once in a step. Results are the same. No
+// stalls.
 //
 //   operation   cores                                                     sums and products
 //   1           vertices A, B, C minus O; the edges B-A, C-B, A-C         18
@@ -11,34 +12,39 @@
 //   7-9         V = N . I, U_k = E_k . I, d I_k                           see hit_dots
 //   then        the decision, and t = d / V, P_k = (d I_k) / V            see hit_decision; 4 dividers, or one
 //
-// An operation takes 3 clocks, or a step. A triangle comes with step_i. The ray is given by its context: origin_i and
-// both ids come in the next clock and stay until the next step_i; so does the direction after the step_i with
-// direction_ctx_o. A verdict and its P are valid for a clock.
+// An operation takes 3 clocks, or a step. triangle_i and the context of its ray, ctx_i, come with step_i. origin_i and
+// both ids of this ray come in the next clock and stay until the next step_i. direction_ctx_o is the context whose
+// direction is needed. direction_i must be its direction from the clock after a step_i until the next step_i. A verdict
+// and its P are valid for a clock.
 //
-// The record is hit_test_pkg's, with two differences from one that a host makes in double:
-//   * bounds are those of words computed here, derived below, and about twice as large;
-//   * d is NaN if its sign is not sure, or if the errors of N or d are too large: the plane then gives no hit,
-//     only misses that the edges decide, and doubts (see hit_decision).
-// The verdict's normal_error and distance_error bound the errors of N and d, if d is a number. For a hit,
-// set_up_pkg computes the error of t from these and t_error.
+// The record has hit_test_pkg's format. It differs in two ways from a record that a host computes in double precision:
+//   * Bounds are about twice as large, because they include the errors of words computed in binary32 (see below).
+//   * d is NaN if its sign is not sure, or if the errors of N or d are too large. Then there are no hits, only doubts
+//     and misses that the edges decide (see hit_decision).
+// The verdict's normal_error and distance_error bound the errors of N and d, if d is a number. For a hit, set_up_pkg
+// computes the error of t from these and t_error.
 //
-// Why sure answers are sure. Let u = 2**-24, primes mark computed words, e(x) be exponents.
-//   Subtracting rounds once: A' = A (1 + u), D' = D (1 + u), with |u| standing for any error up to it.
-//   An edge E = A x D.  Its terms p = A'_i D'_j are off by three roundings, their difference by one more:
-//     |E'_k - E_k| <= 3.02 u T_k + 1.01 u |E'_k|, where T_k = |p| + |p'| >= |E'_k| are its terms.
-//     I has components below 2, so |I . E' - I . E| <= (6.04 + 2.02) u T for T = T_x + T_y + T_z, and the
-//     dot product's three roundings add 6.001 u T. The sum, 14.07 u T, plus the error of T', is below
-//     bound = 16 u T', which changes only the exponent.
-//   The plane.  With M_k the terms of N_k, as T_k those of E_k:  |N'_k - N_k| <= 3.02 u M_k + 1.01 u |N'_k|, and
-//     V = I . N' is off by at most 14.07 u (M_x + M_y + M_z) < 84.5 u 2**e(M), with M the largest M_k.
-//     d = N . A:  |d' - d| <= u sum |A_k| (5.04 |N_k| + 3.02 M_k) <= 8.06 u sum |A_k| M_k < 96.8 u 2**(e(A) + e(M)).
-//     With normal_error = m = e(M) - e(N'), distance_error = q = max(e(A) + e(M) - e(d), 0), and the decision's
-//     g = max(e(N') - e(V), 0), these are at most 84.5 u 2**(m + g) of V and 96.8 u 2**q of d. So d has the right
-//     sign while q <= 14; and while m + g <= 14, V is off by at most 0.083 of itself, and t by
-//     (181.3 + 1) u 2**x / (1 - 0.083) < 199 u 2**x of itself, with x = max(m + g, q). Numbers are no closer
-//     than u of their size, so fewer than 2**(8 + x) of them lie between t' and t.
-//   Underflow adds at most 2**-150 to each product. Bounds are infinite, or d NaN, if a relevant size is
-//   below 2**-100: otherwise underflow is far below the margin of the constants.
+// Why sure answers are right. u = 2**-24 is the unit roundoff, primes mark computed words, e(x) is the exponent of x,
+// for a vector its largest one. A, B, C are relative to the origin. They and the edge vectors D (B - A, C - B, A - C)
+// are rounded once, so they have a relative error of at most u.
+//   Error of I . E for an edge plane E = A x D, compared with its bound:
+//     E_k is a difference of two products such as A_i D_j. T_k is the sum of their magnitudes, T = T_x + T_y + T_z.
+//     A product is off by three roundings, the difference by one more: |E'_k - E_k| <= 3.02 u T_k + 1.01 u |E'_k|.
+//     |I_k| < 2 and |E'_k| <= T_k, so |I . E' - I . E| <= (6.04 + 2.02) u T.
+//     The dot product's three roundings add 6.001 u T. The sum, 14.07 u T, and the error of T' are below 16 u T'.
+//     The bound is 16 u T', which is T' with another exponent.
+//   Errors of V = I . N and of d = N . A. Let M_k be for N_k what T_k is for E_k, and M the largest M_k.
+//     As for edges, |N'_k - N_k| <= 3.02 u M_k + 1.01 u |N'_k|.
+//     As for edges, V' is off by at most 14.07 u (M_x + M_y + M_z) < 84.5 u 2**e(M).
+//     |d' - d| <= u sum |A_k| (5.04 |N_k| + 3.02 M_k) <= 8.06 u sum |A_k| M_k < 96.8 u 2**(e(A) + e(M)).
+//   Error of t = d / V. Let m = e(M) - e(N') (normal_error), q = max(e(A) + e(M) - e(d), 0) (distance_error),
+//     g = max(e(N') - e(V), 0) (the decision's t_error) and x = max(m + g, q).
+//     V' is off by at most 84.5 u 2**(m + g) of itself. If m + g <= 14 (is_good_hit), this is at most 0.083.
+//     d' is off by at most 96.8 u 2**q of itself. If q <= 14 (else plane_of makes d NaN), its sign is right.
+//     With the division's rounding, t' is off by (181.3 + 1) u 2**x / (1 - 0.083) < 199 u 2**x of itself.
+//     Floats near t are at least u t apart, so fewer than 2**(8 + x) lie between t' and t.
+//   Underflow adds at most 2**-150 to each product. It is far below the margins of the constants, unless a size is
+//     below 2**-100: then the bound is infinite, or d is NaN.
 //   Overflow gives an infinity or NaN, which is never sure.
 //
 // Source: the paper's section 2.2 (what is computed once for an origin); the bounds are this project's.
@@ -55,11 +61,11 @@ module triangle_test
   input  logic                step_i,
   input  logic [RayWidth-1:0] ctx_i,
   // verilator lint_off UNUSEDSIGNAL
-  // Ranks, and lines that are `exact`, are for exact_resolver.
+  // Ranks, and lines with `exact` high, are for exact_resolver.
   input  triangle_line_t      triangle_i,  // skipped if it has an error
   // verilator lint_on UNUSEDSIGNAL
   input  logic [95:0]         origin_i,
-  input  logic [31:0]         skip_id_i,  // triangles to skip
+  input  logic [31:0]         skip_id_i,  // the ray skips triangles skip_id_i and source_id_i
   input  logic [31:0]         source_id_i,
   output logic [RayWidth-1:0] direction_ctx_o,
   input  logic [95:0]         direction_i,
@@ -73,9 +79,9 @@ module triangle_test
     $error("triangle_test: expected Clocks of 1, or 7 or more");
   end
 
-  // In steps, which are clocks if Clocks is 1
+  // Latencies in steps, which are clocks if Clocks is 1
   localparam int unsigned Operation = (Clocks == 1) ? hit_test_pkg::AdderLatency : 1;
-  localparam int unsigned Take = (Clocks == 1) ? 2 : 1;  // a register for a memory's output
+  localparam int unsigned Take = (Clocks == 1) ? 2 : 1;  // with one for a memory's output
   localparam int unsigned Decide = Take + 9 * Operation;
   localparam int unsigned Divide = hit_test_pkg::divide_latency(set_up_pkg::FracWidth);  // clocks
   localparam int unsigned DivideSteps = (Clocks == 1) ? Divide + 1 : (Divide + 3) / Clocks + 1;
@@ -147,7 +153,7 @@ module triangle_test
   );
 
   // ---- Cross: the edges' planes, then N. Word k of a product is a_i b_j - a_j b_i for (i, j, k) = (1, 2, 0) and so
-  // on; the size of its terms is |a_i b_j| + |a_j b_i|, which exceeds the word by more, the more cancels
+  // on; `terms` is |a_i b_j| + |a_j b_i|, the header's T_k and M_k
 
   logic [4*192-1:0] lefts, rights, cross_terms, minuends, others, differences;
   logic [12*32-1:0] product, terms;
@@ -190,7 +196,7 @@ module triangle_test
     .result_o(differences)
   );
 
-  // ---- Sum: x + y of the edges' terms, then + z; x + y of d, then + z. Bounds come an operation before d
+  // ---- Sum: x + y of the edges' terms, then + z; x + y of d, then + z. Bounds are ready an operation before d
 
   logic [95:0] vertex, shares, last_terms, early_bounds, bounds;  // shares: N_k A_k
   logic [31:0] last_share, d, good_d;
@@ -246,7 +252,7 @@ module triangle_test
   );
   assign d = sums[32*7+:32];
 
-  // The plane's errors, from exponents: those of A, N and N's terms go beside d
+  // The plane's errors, from exponents: those of A, N and N's terms are delayed to come with d's
   delay_line #(
     .Width(12 * 32 + 24),
     .Depth(3 * Operation)
@@ -348,8 +354,8 @@ module triangle_test
     assign divide          = valid_q[Decide+1] & hit_q;
     assign verdict_o.valid = valid_q[Last];
   end else begin : gen_turns
-    localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // quotient of t to step
-    logic [3:0] since_q;  // [n]: n + 1 clocks after the step
+    localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // from t to the step
+    logic [3:0] since_q;  // [n]: step_i was high n + 1 clocks ago
     logic [Wait*32-1:0] waiting_q;
     logic [(Wait+1)*32-1:0] waiting;  // the latest is highest
 

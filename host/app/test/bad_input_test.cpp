@@ -142,7 +142,7 @@ TEST_F(BadInput, SceneFiles) {
   expect_refused(render({"scene.json"}), "scene\\.json: found no none\\.obj, expected [^\n]+");
 }
 
-/// More triangles than indices: reported before any loop over all of them.
+/// The scene has more triangles than indices. This is reported before any loop over all triangles.
 TEST_F(BadInput, TooManyInstances) {
   constexpr int kSide = 300, kPlaces = 12100;
   std::string model, places;
@@ -150,7 +150,7 @@ TEST_F(BadInput, TooManyInstances) {
     for (int x = 0; x < kSide; ++x) {
       model += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
       if (x == 0 || y == 0) continue;
-      const int a = y * kSide + x + 1;  // vertex number; b: earlier neighbours
+      const int a = y * kSide + x + 1;  // number of this vertex; b: of an earlier neighbour
       for (const int b : {a - kSide - 1, a - 1}) {
         model += "f " + std::to_string(a) + " " + std::to_string(b) + " " +
                  std::to_string(b == a - 1 ? a - kSide - 1 : a - kSide) + "\n";
@@ -175,7 +175,7 @@ TEST_F(BadInput, VectorsThatNoMachineHas) {
   expect_old_files();
 }
 
-/// With numbers so large that differences, products or the camera's distance overflow float.
+/// Coordinates are so extreme that differences, products or the camera's distance overflow float.
 TEST_F(BadInput, ExtremeCoordinatesNeverCrash) {
   for (const char* size : {"1e-40", "1e-30", "1e15", "1e30", "3e38", "1e300"}) {
     SCOPED_TRACE(size);

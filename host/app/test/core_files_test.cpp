@@ -1,4 +1,4 @@
-// Files about a ray core that ./render writes.
+// Tests the files about a ray core that ./render writes.
 #include "host/app/test/render_run.h"
 
 namespace raygate {

@@ -4,8 +4,7 @@
 //                               memory (malloc and the like: ENOMEM), large (allocations of 4 KiB
 //                               and more; all from call N on), write (ENOSPC), sync (fsync: EIO)
 //                               or rename (EIO).
-//   RAYGATE_FAULT_COUNT=FILE    at the end, FILE gets the number of calls of each kind, in this
-//   order
+//   RAYGATE_FAULT_COUNT=FILE    FILE gets the numbers of calls, by kind in this order, at the end
 //
 // The method is that of SQLite's tests ("How SQLite Is Tested", section 3).
 #include <dlfcn.h>

@@ -1,6 +1,6 @@
-// One allocation, write, sync or rename fails per run. Each file then has its old or its new
-// contents, and one line and the exit status report the error. A dozen runs for each kind;
-// RAYGATE_FAULTS=N makes N runs, 0 one for each call (`make test LONG=faults`).
+// In each run, one allocation, write, sync or rename fails. Each file then has its old or its new
+// contents, and one line and the exit status report the error. There are 12 runs for each kind of
+// call; RAYGATE_FAULTS=N makes N runs, and 0 one run for each call (`make test LONG=faults`).
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -105,7 +105,7 @@ class Faults : public Render {
       const std::string& name = job.outputs[i];
       const std::string bytes = folder_.read(name);
       if (!is_done && bytes == "old " + name) continue;
-      // Statistics are not compared, as times differ between runs.
+      // Statistics are not compared, because times differ between runs.
       const bool is_whole = name == "stats.json" ? json::accept(bytes) : bytes == made[i];
       EXPECT_TRUE(is_whole) << name << ", " << bytes.size() << " bytes";
     }
@@ -117,7 +117,7 @@ TEST_F(Faults, OfARender) {
            {"c.exr", "c.png", "stats.json"}});
 }
 
-/// A scene whose tree two threads build.
+/// In this scene, two threads build the BVH.
 TEST_F(Faults, OfALargerScene) {
   survive({{RAYGATE_SCENES "/teapot.obj", "--engine", "cpu", "--size", "8x6", "--threads", "2",
             "--quiet", "--integrator", "primary", "-o", "c"},

@@ -14,11 +14,11 @@ namespace raygate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kSoon = 10.0;  // seconds, on a busy machine; without the signal: minutes
+constexpr double kSoon = 10.0;  // seconds, on a busy machine; a whole run takes minutes
 
 TEST_F(Render, InterruptedRunsWriteWhatThereIs) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // A crop without the empty border, so that the first tile has something to see.
+    // The crop excludes the empty border, so the first tile shows something.
     const Outcome outcome =
         run_program({.arguments = {kCornell, "--size", "640x480", "--crop", "200,120,520,440",
                                    "--threads", "1", "--spp", "4", "-o", "a", "--stats", "s.json"},
@@ -57,7 +57,7 @@ double seconds_to_answer(const fs::path& folder, std::vector<std::string> argume
   return std::chrono::duration<double>(Clock::now() - sent).count();
 }
 
-/// Every ray meets all triangles, which no tree can separate: one batch takes minutes.
+/// Every ray meets all triangles, because no BVH can separate them. So one batch takes minutes.
 TEST_F(Render, InterruptionIsAnsweredAmongCoincidentTriangles) {
   std::string obj = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\n";
   for (int i = 0; i < 300000; ++i) obj += "f 1 2 3\n";

@@ -112,7 +112,7 @@ TEST_F(Parts, WithLightPathsMakeThePicture) {
   const auto render = [&](const std::vector<std::string>& more) {
     const Outcome outcome = run(joined({kPaper, "--size", "60x44", "--spp", "6", "--integrator",
                                         "path", "--engine", "cpu", "--exposure", "0"},
-                                       more));  // exposure 0, as merge uses
+                                       more));  // exposure 0, because merge uses it
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   };
   render({"-o", "whole", "--threads", "1"});
@@ -219,7 +219,7 @@ TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
       "c.png: would overwrite c.png");
 }
 
-/// The same options with an edited scene make another picture.
+/// With the same options, an edited scene makes another picture.
 TEST_F(Parts, OfAnEditedSceneAreRefused) {
   const auto write_scene = [&](const char* height, const char* colour) {
     folder_.write("s.obj",

@@ -222,8 +222,7 @@ class Browser(unittest.TestCase):
             self.assertGreater(max(self.pixels()[:-1:4]), 100)
             frame = browser.find_element(By.ID, "frame")
 
-            # After turning, zooming and moving, the command has a camera, and the picture differs. Fast wheel events cancel all pictures
-            # except the last.
+            # After turning, zooming and moving, the command has a camera, and the picture differs. Fast wheel events cancel pictures.
             before = self.pixels()
             ActionChains(browser).drag_and_drop_by_offset(frame, 60, 10).perform()
             self.wait(lambda _: "--camera=" in self.command())

@@ -19,8 +19,8 @@ struct Invocation {
   std::filesystem::path folder;  ///< the current folder, to which file names are relative
   bool terminal = false;         ///< standard error is a terminal of 80 columns, not a pipe
   int signal_when_busy = 0;      ///< signal to send when 1 % is done; needs `terminal`
-  /// Functions, called one after the other with the program's process id, each when standard error
-  /// has received its text since the previous call.
+  /// Texts and functions. Waits until standard error has received the first text, calls the first
+  /// function with the program's process id, waits for the second text, and so on.
   std::vector<std::pair<std::string, std::function<void(int)>>> when_said{};
   std::string out_file{};                  ///< file for standard output
   long file_size_limit = 0;                ///< largest file, in bytes; 0: no limit

@@ -96,7 +96,7 @@ TEST_F(Render, TheSummaryNamesNoUnitWhereNoneIsAtWork) {
   }
 }
 
-// The program that `make cpu` builds.
+// Runs the program that `make cpu` builds.
 TEST_F(Render, WithoutVerilatorTheSimulatedUnitsAreNamed) {
   const auto render_without = [&](const std::vector<std::string>& arguments) {
     return run_program({.arguments = joined({kCornell, "--size", "16x16"}, arguments),

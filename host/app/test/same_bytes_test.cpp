@@ -144,7 +144,7 @@ std::vector<std::string> gallery_commands() {
 
 class Gallery : public Render, public testing::WithParamInterface<std::string> {};
 
-/// Compares a crop only, as crops equal their part of the whole picture.
+/// Compares only a crop, because a crop equals its part of the whole picture.
 TEST_P(Gallery, PictureIsWhatItsCommandMakes) {
   std::istringstream words(GetParam());
   std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
@@ -189,7 +189,7 @@ TEST_F(Variants, DrawTheirOwnPictures) {
   EXPECT_FALSE(picture("raw", {"--variant", "e8p9-raw"}) == plain);
   EXPECT_EQ(stats_["variant"], "e8p9-raw");
   EXPECT_EQ(stats_["engine"], "model");
-  // With few digits, exact arithmetic decides more tests.
+  // In formats with few digits, exact arithmetic decides more tests.
   (void)picture("few", {"--variant", "e8p12"});
   EXPECT_GT(stats_["exact_inside"], 0);
 }
@@ -203,7 +203,7 @@ TEST_F(Render, ThreadsChangeNoByte) {
   expect_same_pictures("1", "8");
 }
 
-// Paths with random scattering, also through glass.
+// The paths scatter randomly and also pass through glass.
 TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
   for (const std::string scene : {"cornell", "paper"}) {
     const auto render_by = [&](const std::vector<std::string>& engine) {
@@ -221,7 +221,7 @@ TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
   }
 }
 
-// Rays with and without a common origin.
+// Tests rays with and without a common origin.
 TEST_F(Render, EnginesGiveTheSameBytesThroughAnyLens) {
   for (const std::string projection : {"perspective", "orthographic"}) {
     for (const std::string aperture : {"0", "20"}) {

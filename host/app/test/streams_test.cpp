@@ -1,4 +1,4 @@
-// Standard output, pipes and terminals as targets of a run's output.
+// Tests standard output, pipes and terminals as targets of a run's output.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -74,7 +74,7 @@ TEST_F(Render, ControlCharactersDoNotReachTheTerminal) {
   EXPECT_EQ(outcome.status, 2);
   expect_clean(outcome.err);
   EXPECT_TRUE(contains(outcome.err, "a\\x1B]0;gotcha\\x07\\x7F\\xC2\\x9B.obj"));
-  // A warning, the summary, and the statistics.
+  // Checks a warning, the summary and the statistics.
   folder_.write(name, "mtllib \x1b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   outcome = run({name, "--size", "4x4", "--engine", "cpu", "--stats", "-"});
   EXPECT_EQ(outcome.status, 0);

@@ -52,7 +52,7 @@ TEST_F(TraceRays, SaysWhatIsNearest) {
   EXPECT_EQ(outcome.err.substr(0, 15), "3 rays, 1 hit, ");
 }
 
-// As in `echo "0.5 0.25 1 0 0 -2" | ./trace sheets.obj -`.
+// Tests input as by `echo "0.5 0.25 1 0 0 -2" | ./trace sheets.obj -`.
 TEST_F(TraceRays, ReadsRowsBetweenSpaces) {
   folder_.write("spaced.txt", "0.5 0.25 1 0 0 -2\n");
   EXPECT_EQ(trace({"sheets.obj", "spaced.txt", "--columns", "triangle,t"}).out,

@@ -14,7 +14,7 @@ namespace raygate::test {
 /// Damages files at random. The same seed gives the same damage.
 class Damage {
  public:
-  /// Damage includes inserted `splinters`, words of the format, and numbers that are hard to read.
+  /// Inserted text is one of `splinters`, words of the file format, or a number hard to parse.
   explicit Damage(std::uint64_t seed, std::span<const char* const> splinters = {})
       : random_(seed), splinters_(std::begin(kNumbers), std::end(kNumbers)) {
     splinters_.insert(splinters_.end(), splinters.begin(), splinters.end());

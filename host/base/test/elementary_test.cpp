@@ -175,7 +175,7 @@ TEST(Srgb, AgreesWithTheForwardFormula) {
     const float linear = static_cast<float>(i) / 100000.0f;
     const double x = linear;
     const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-    // Expect half a code, and more: the curve's published parts meet only to 1e-5 of a code.
+    // Half a code, and more: the standard's two pieces of the curve differ by 1e-5 where they meet.
     EXPECT_LE(std::abs(linear_to_srgb(linear) - 255 * encoded), 0.5 + 1e-4) << linear;
   }
 }

@@ -25,7 +25,7 @@ TEST(Numbers, AreReadToTheNearestDouble) {
   EXPECT_EQ(to_number("7."), 7.0);
   EXPECT_EQ(to_number("0.1"), 0.1);
   EXPECT_EQ(to_number("123456.78901234567"), 123456.78901234567);
-  EXPECT_EQ(to_number("9007199254740993"), 9007199254740992.0);              // a tie: to even
+  EXPECT_EQ(to_number("9007199254740993"), 9007199254740992.0);              // tie rounds to even
   EXPECT_EQ(to_number("2.2250738585072011e-308"), 2.2250738585072011e-308);  // subnormal
 }
 

@@ -1,5 +1,4 @@
-// The BVH holds every triangle once, inside all boxes above it and at a bounded depth, also below
-// instances.
+// BVHs with and without instances hold each triangle once, inside its boxes, at bounded depth.
 #include "host/bvh/bvh.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +20,7 @@ namespace {
 
 using test::Random;
 
-/// Walks a whole BVH, including instances. Fails if a corner is not strictly inside the boxes above
-/// it.
+/// Walks a whole BVH, including instances. Fails if a corner is not strictly inside all its boxes.
 struct TreeWalk {
   const Bvh& bvh;
   std::vector<int> visits;       // number of visits, by triangle
@@ -191,7 +189,7 @@ TEST(Bvh, WhatOneThreadThrowsEndsAll) {
   const Scene scene = test::scene_of(soup(random, 20000));
   const UsingVectors put_back(vectors_in_use());
   ASSERT_EQ(::setenv("RAYGATE_VECTORS", "foo", 1), 0);
-  detail::vectors_in_use = -1;  // as in a process that has not selected them yet
+  detail::vectors_in_use = -1;  // as in a process that has not selected an instruction set
   EXPECT_THROW(Bvh(scene, 2), std::runtime_error);
   ::unsetenv("RAYGATE_VECTORS");
 }

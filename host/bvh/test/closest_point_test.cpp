@@ -124,7 +124,7 @@ TEST(BoxQuery, FindsWhatTouchesAndNothingElse) {
   EXPECT_GT(total, 1000u);
 }
 
-// A box that is a vertex touches all triangles around it: boxes are closed.
+// Boxes are closed: a box of size 0 at a vertex touches all triangles around the vertex.
 TEST(BoxQuery, APointTouchesTheTrianglesThatEndThere) {
   const std::vector<Corners> mesh = test::sphere(2);
   const Bvh bvh(test::scene_of(mesh));

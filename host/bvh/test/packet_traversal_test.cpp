@@ -17,8 +17,8 @@ namespace {
 
 using test::Random;
 
-/// Sends up to eight rays through the BVH. Expects that each visits every triangle that it hits or,
-/// if hits `shorten` rays, a nearest one. Returns the number of hits.
+/// Sends up to eight rays through the BVH. Expects that a ray visits every triangle that it hits,
+/// or only a nearest one if `shorten`, when hits shorten rays. Returns the number of hits.
 int expect_nothing_culled(const Bvh& bvh, const std::vector<Ray>& rays, bool shorten) {
   int found = 0;
   LaneMask left = (1u << rays.size()) - 1;
@@ -66,7 +66,7 @@ int expect_nothing_culled(const Bvh& bvh, const std::vector<Ray>& rays, bool sho
       if (!shorten) {
         EXPECT_EQ(hits[i].size(), expected);
       } else if (expected != 0) {
-        bool reached = false;  // the nearest, or one exactly as near
+        bool reached = false;  // whether a triangle at exactly the least distance was visited
         for (const std::uint32_t s : hits[i]) {
           reached |= compare_hits(rays[i], bvh.corners_of(s), bvh.corners_of(nearest)) == 0;
         }
@@ -78,7 +78,7 @@ int expect_nothing_culled(const Bvh& bvh, const std::vector<Ray>& rays, bool sho
 }
 
 /// Returns a ray that is difficult for box tests: along an axis, with tiny components, from a
-/// vertex or an edge, or aimed at one.
+/// vertex or an edge, or aimed at a vertex or an edge.
 Ray hard_ray(Random& random, const std::vector<Corners>& mesh, float size) {
   const Corners& t = mesh[random.below(static_cast<int>(mesh.size()))];
   const Corners& other = mesh[random.below(static_cast<int>(mesh.size()))];

@@ -14,8 +14,8 @@ namespace raygate::test {
 /// Origin, direction and three corners, as bits of floats.
 using Patterns = std::array<std::uint32_t, 15>;
 
-/// Returns the first predicate that is wrong for these words, or "". Coordinates that exact.h does
-/// not accept (not finite, or above 2^126) are replaced by others; directions are not.
+/// Returns the name of the first predicate that is wrong for these words, or "". Coordinates that
+/// are not finite or above 2^126 are replaced by valid ones; directions are not replaced.
 inline std::string disagreement(const Patterns& words) {
   const auto vector = [&](std::size_t i, bool coordinate) {
     glm::vec3 v;

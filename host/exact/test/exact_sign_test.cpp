@@ -12,8 +12,8 @@ namespace {
 
 using test::sign_of;
 
-// Points of a coarse grid, moved by tiny amounts: many exactly or nearly in line. Coordinates are
-// multiples of 2^-30 below 2^3, so that __int128 holds the determinant.
+// Points of a coarse grid are moved by tiny amounts, so that many are exactly or nearly collinear.
+// Coordinates are multiples of 2^-30 below 2^3, so that __int128 holds the determinant.
 TEST(Turn, AgreesWithIntegersNearALine) {
   std::mt19937_64 random(2);
   const auto coordinate = [&] {

@@ -70,7 +70,7 @@ Case hard_case(Random& random) {
   return {{origin, direction}, t};
 }
 
-/// Expects an error of `rounded` of at most (1 + 2^-10) / 2 times the distance between floats.
+/// Expects that the error of `rounded` is at most (1 + 2^-10) / 2 ulp of float.
 void expect_near_half_an_ulp(float rounded, const mpq_class& exact) {
   if (!std::isfinite(rounded)) {
     EXPECT_GT(abs(exact), 0x1.fffffep127);
@@ -150,7 +150,7 @@ TEST(Exact, BarycentricsKeepTheirPromise) {
     expect_barycentric(ray, t);
   }
   EXPECT_GT(hits, 1000);
-  // The triangle is so far away for its size that weights in double consist of rounding errors.
+  // Triangles so small and far away that weights computed in double are only rounding errors.
   for (const float s : {1e-10f, 1e-16f, 1e-30f}) {
     const Corners t = {glm::vec3(-s, -s, 0), glm::vec3(2 * s, -s, -s / 2),
                        glm::vec3(-s, 3 * s, s / 4)};
@@ -160,8 +160,8 @@ TEST(Exact, BarycentricsKeepTheirPromise) {
   }
 }
 
-// The other triangle is the first one with its vertices in another order. In two thirds of the
-// cases one of its coordinates is an ulp larger, or one of its vertices is another point.
+// The second triangle has the vertices of the first in another order. In a third of the cases, one
+// coordinate is an ulp larger; in another third, one vertex is replaced by another point.
 TEST(Exact, OrdersHitsAsRationalsDo) {
   Random random;
   int compared = 0, equal = 0;
@@ -184,7 +184,7 @@ TEST(Exact, OrdersHitsAsRationalsDo) {
   EXPECT_GT(equal, 100);
 }
 
-// Compares the position of a hit with another triangle's plane and with a limit, by rationals.
+// Uses rationals to compare the position of a hit with another triangle's plane and with a limit.
 TEST(Exact, SidesAndLimitsAtAHitAgreeWithRationals) {
   Random random;
   int hits = 0, on_plane = 0;

@@ -21,7 +21,7 @@ mpq_class exact(const Expansion<N>& e) {
   return sum;
 }
 
-/// Generates floats up to 2^127. In half of them the exponent is near that of the one before.
+/// Generates floats up to 2^127. In half of the cases, the exponent is near the previous float's.
 class Floats {
  public:
   float operator()() {

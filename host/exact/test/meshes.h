@@ -18,7 +18,7 @@
 
 namespace raygate::test {
 
-/// Returns I . E, rounded as the unit does.
+/// Returns the dot product of i and e, with the hardware's roundings.
 inline float float_dot(const glm::vec3& i, const glm::vec3& e) {
   return (i.x * e.x + i.y * e.y) + i.z * e.z;
 }
@@ -96,7 +96,7 @@ inline std::vector<Corners> sphere(int level, float radius = 1.0f,
   return triangles;
 }
 
-/// Returns a scene of these triangles with one material, and with rests if any corner has a rest.
+/// Returns a scene of these triangles with one material. It has rests unless all are 0 (rest_of).
 inline Scene scene_of(const std::vector<Corners>& triangles) {
   Scene scene;
   scene.materials.emplace_back();

@@ -1,4 +1,4 @@
-// The definitions of exact.h in GMP's rationals.
+// Reference results for the predicates of exact.h, computed with GMP's rationals.
 #pragma once
 
 #include <gmpxx.h>
@@ -25,7 +25,7 @@ inline mpq_class dot(const Rational3& a, const Rational3& b) {
 /// Returns -1, 0 or 1.
 inline int sign_of(__int128 x) { return (x > 0) - (x < 0); }
 
-/// The definitions of exact.h, spelt out in rationals and sharing nothing with exact.cpp.
+/// The definitions of exact.h in rational arithmetic. The code shares nothing with exact.cpp.
 struct RationalOracle {
   Rational3 direction, v[3];
 

@@ -135,14 +135,14 @@ TEST_F(AtomicFileTest, RefusesNamesThatNoFileCanHave) {
     EXPECT_THROW(require_writable(path), InputError);
   }
   EXPECT_EQ(read("file"), "old");
-  // The longest possible name: the temporary file's name must not be longer.
+  // This name has the maximum length; the temporary file's name must not be longer.
   replace_file(folder_ / std::string(255, 'n'), "x");
   EXPECT_EQ(read(std::string(255, 'n')), "x");
 }
 
 TEST_F(AtomicFileTest, RefusesWithoutPermission) {
   replace_file(folder_ / "file", "old");
-  const bool is_root = ::geteuid() == 0;  // root may write anywhere, so be another user
+  const bool is_root = ::geteuid() == 0;  // root may write anywhere, so become another user
   ::chmod((folder_ / "file").c_str(), 0444);
   ::chmod(folder_.c_str(), 0555);
   if (is_root) {
@@ -219,7 +219,7 @@ TEST_F(AtomicFileTest, InputsAreNoOutputsUnderWhateverName) {
               (folder_ / name).string() + ": would overwrite " + (folder_ / "in.mtl").string());
   }
   require_distinct(std::vector<fs::path>{folder_ / "new"}, inputs);
-  fs::create_symlink("new", folder_ / "other");  // to a file that does not exist yet
+  fs::create_symlink("new", folder_ / "other");  // link to a file that does not exist yet
   const fs::path link = folder_ / "other", file = folder_ / "new";
   EXPECT_EQ(input_error_of([&] {
               require_distinct({&link, 1}, {&file, 1});

@@ -34,7 +34,7 @@ class EnvironmentFile : public testing::Test {
 };
 
 TEST_F(EnvironmentFile, PixelsOneByOne) {
-  // 128 * 2^(136 - 136) / 2
+  // The first texel's red is 128 * 2^(136 - 136) / 2: mantissa 0x80, exponent 0x88, EXPOSURE 2.
   const EnvironmentMap picture = hdr("-Y 1 +X 2\n\x80\x40\x20\x88"s + "\0\0\0\0"s);
   EXPECT_EQ(picture.width, 2);
   ASSERT_EQ(picture.texels.size(), 2u);

@@ -47,7 +47,7 @@ TEST_F(ExrFile, BadFilesAreRefusedInOneLine) {
             "a.exr: no channel R; the file has A, B, G, N.X, N.Y, N.Z, S, Z, id");
 }
 
-/// Checked before memory is allocated: a file of 2,634 bytes from fuzzing took two gigabytes.
+/// Lengths are checked before memory is allocated. A file of 2,634 bytes from fuzzing took 2 GB.
 TEST_F(ExrFile, HeadersAreNoLongerThanTheFile) {
   std::string bytes = encode_exr(make_sample_film(20, 10, {0, 0, 20, 10}),
                                  {.attributes = {{"scene", "cornell.obj"}}});

@@ -35,7 +35,7 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   results_.clear();
   core_->trace(image_->lines(), sent_, results_);
   for (const CoreResult& result : results_) {
-    if (result.error != CoreResult::Error::kNone) {  // the core's memory holds no valid BVH
+    if (result.error != CoreResult::Error::kNone) {  // the BVH in the core's memory is not valid
       throw InputError(result.error == CoreResult::Error::kMemory
                            ? "ray core's memory: no line " + std::to_string(result.line)
                            : "ray core's memory: a node is below itself, or below more than " +

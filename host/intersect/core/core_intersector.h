@@ -51,8 +51,8 @@ struct CoreResult {
   std::uint32_t tag = 0;  ///< CoreRay::tag
   std::uint32_t triangle = CoreRay::kNoTriangle;  ///< the triangle's line in memory
   float t = 0.0f;              ///< kEnd: fewer than 2^t_error floats from the exact t
-  std::uint32_t t_error = 0;   ///< kNoT: t and P are unknown and set to 0
-  glm::vec3 point{0.0f};       ///< kEnd: P in the core's own bits, relative to the origin
+  std::uint32_t t_error = 0;   ///< kNoT: `t` and `point` are unknown and set to 0
+  glm::vec3 point{0.0f};       ///< kEnd: the hit point minus the origin, as the core computes it
   std::uint32_t tests = 0;     ///< kEnd: triangles tested
   Error error = Error::kNone;  ///< kEnd: if not kNone, only `tag` and `line` are valid
   std::uint32_t line = 0;      ///< kEnd with kMemory: the line read
@@ -84,9 +84,9 @@ class CoreUnit {
   [[nodiscard]] virtual bool is_exact() const { return false; }
 };
 
-/// Resolves the core's doubts by exact arithmetic on the host, which also computes P of each
-/// nearest hit, with the same bits as in other intersectors. Throws InputError if the core reports
-/// Error::kMemory (a line that does not exist) or Error::kCycle.
+/// Resolves the core's doubts by exact arithmetic on the host. The host also computes the point of
+/// each nearest hit, with the same bits as in other intersectors. Throws InputError if the core
+/// reports Error::kMemory (a line that does not exist) or Error::kCycle.
 class CoreIntersector : public Intersector {
  public:
   /// `bvh` must outlive this object; `image` is its memory image. Intersectors of one thread can

@@ -168,7 +168,7 @@ void LinkedCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRa
   std::size_t sent = 0, ended = 0;
   std::vector<std::uint32_t> out;  // words of the ray being sent, in reverse
   for (;;) {
-    ended += take_results(results);  // first, as results free capacity for rays
+    ended += take_results(results);  // comes first, because results free capacity for rays
     if (ended == rays.size()) break;
     if (out.empty() && sent < rays.size() && sent - ended < most_) {
       const auto message = ray_message(rays[sent++]);

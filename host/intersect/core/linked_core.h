@@ -76,8 +76,8 @@ class LinkedCore : public CoreUnit {
   CoreCounters counters_;
 };
 
-/// Opens a serial port: four bytes per word, lowest first, 8N1, 2 Mbaud. Throws InputError with the
-/// port's name if the port cannot be opened; so does wait() if the board is silent for 30 s.
+/// Opens a serial port: four bytes per word, lowest first, 8N1, 2 Mbaud. InputError with the port's
+/// name is thrown if the port cannot be opened, and by wait() if the board is silent for 30 s.
 [[nodiscard]] std::unique_ptr<WordLink> open_serial_link(const std::filesystem::path& port);
 
 }  // namespace raygate

@@ -141,8 +141,8 @@ class ImageWriter {
     return refs;
   }
 
-  /// Sets the grid, on which the box extends from 0 to at most 255. An axis without extent has much
-  /// smaller cells than the others.
+  /// Sets the grid of a node, on which its box extends from 0 to at most 255. Cells of an axis
+  /// without extent are much smaller than those of the other axes.
   static void set_grid(const Bounds& bounds, NodeLine& node) {
     constexpr int kFinest = 24;  // cells are at most 2^24 times smaller than on the coarsest axis
     node.origin = bounds.low;

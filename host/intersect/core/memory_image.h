@@ -13,8 +13,8 @@
 
 namespace raygate {
 
-/// Reads or writes the fields of a SystemVerilog packed struct in 32-bit words, from the lowest
-/// bits, which hold the struct's last field. `Words` has an operator [].
+/// Reads or writes the fields of a SystemVerilog packed struct in 32-bit words, beginning with the
+/// struct's last field, which is in the lowest bits. `Words` has an operator [].
 template <class Words>
 class PackedFields {
  public:
@@ -86,7 +86,7 @@ struct NodeLine {
 struct TriangleLine {
   FloatCorners corners{};
   std::uint32_t index = 0;      ///< index of this line
-  std::uint32_t rank = 0;       ///< of hits at equal t, the lowest rank is nearest
+  std::uint32_t rank = 0;       ///< a hit of lower rank is preferred among hits at equal t
   std::uint32_t primitive = 0;  ///< the host's primitive index, not read by the core
 
   TriangleLine() = default;

@@ -28,17 +28,18 @@ std::int64_t shift_right(std::int64_t x, int amount) {
   return amount > 63 ? 0 : x >> amount;
 }
 
-/// An axis as seen from the ray: grid plane q is at a + q s / 256, or a - q s / 256 if `back`.
+/// An axis as seen from the ray. The ray meets the grid plane q at t = a + q step / 256 or, if
+/// `back`, at t = a - q step / 256. All times are in units of 2^E / kWhole (see enter_boxes).
 struct Axis {
   bool back;               // the ray goes towards smaller q
-  std::int64_t near, far;  // a minus and plus the error margin, in units
-  std::int64_t step;       // s
+  std::int64_t near, far;  // a minus the error margin, and a plus the error margin
+  std::int64_t step;
 };
 
 }  // namespace
 
 BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
-  // The ray surely leaves the node before 2^E.
+  // E = exponent - 127: the ray surely leaves the node before t = 2^E.
   float distance[3];
   int exponent = field(ray.t_max) == 0xFF ? 511 : field(ray.t_max) + 1;
   for (int k = 0; k < 3; ++k) {
@@ -114,7 +115,7 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
 bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit) {
   // The limit in the entry's units, rounded down.
   const int amount = static_cast<int>(group.exponent) + 23 - kEnterBits - field(limit);
-  if (amount <= 0) return false;  // at least 2^23 units
+  if (amount <= 0) return false;  // the limit is at least 2^23 units
   return entry.enter > shift_right(significand(limit), amount);
 }
 
@@ -128,8 +129,7 @@ constexpr int kMostPlaneError = 14;
 constexpr std::uint32_t kTErrorUnit = 8;
 constexpr auto kNan = std::bit_cast<float>(0x7FC00000u);
 
-/// Returns u x v with the hardware's NaN, and for each component the sum of the magnitudes of its
-/// two products.
+/// Returns u x v with the hardware's NaN. Sets `terms` to the sums of the products' magnitudes.
 glm::vec3 cross_product(const glm::vec3& u, const glm::vec3& v, glm::vec3& terms) {
   glm::vec3 product = cross(u, v, terms);
   for (int k = 0; k < 3; ++k) {
@@ -290,8 +290,8 @@ struct RayTrace {
     return inside;
   }
 
-  /// Tests a triangle. `settles`: exact arithmetic has found that it is the ray's nearest hit, so
-  /// the result is replaced.
+  /// Tests a triangle. `settles`: exact arithmetic has found that the triangle is the ray's nearest
+  /// hit, so the test only computes the result.
   void test(const TriangleLine& triangle, bool settles) {
     const ReferenceBurstUnit unit;
     const glm::vec3& direction = ray.ray.direction;
@@ -346,8 +346,7 @@ struct RayTrace {
     return widened(TriangleLine(lines[line]).corners);
   }
 
-  /// Returns whether the ray hits `line` before `other` or, at equal t, `line` has the lower rank.
-  /// Both must be hit.
+  /// Returns whether the hit of `line` is nearer than that of `other` or, at equal t, ranks lower.
   [[nodiscard]] bool is_nearer(std::uint32_t line, std::uint32_t other) const {
     const int order = compare_hits(ray.ray, corners_of(line), corners_of(other));
     return order < 0 ||

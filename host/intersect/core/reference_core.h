@@ -13,7 +13,7 @@ namespace raygate {
 /// The fields of a ray that box_unit reads.
 struct BoxRay {
   glm::vec3 origin{0.0f};
-  glm::vec3 inverse{0.0f};  ///< 1 / I_k, rounded to nearest; infinite if I_k is 0
+  glm::vec3 inverse{0.0f};  ///< 1 / direction by component, rounded to nearest; infinite for 0
   float t_max = 0.0f;       ///< positive, or +infinity; hits beyond t_max do not count
 };
 
@@ -39,15 +39,15 @@ struct BoxGroup {
 /// Returns whether the entry is surely beyond `limit`, which is at least 0; +infinity: no limit.
 [[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
 
-/// A record computed in binary32, with larger bounds than make_record's. d is NaN if its
-/// sign is not sure, or if N or d are too inaccurate for a hit.
+/// A record computed in binary32, with larger bounds than make_record's. d is NaN if the sign of d
+/// is not sure, or if N or d is too inaccurate for a sure hit.
 struct SetUpRecord {
   PolygonRecord record;
   std::uint32_t normal_error = 0;    ///< number of bits that cancelled in N, unless d is NaN
-  std::uint32_t distance_error = 0;  ///< number of bits that cancelled in d, likewise
+  std::uint32_t distance_error = 0;  ///< number of bits that cancelled in d, unless d is NaN
 };
 
-/// Returns the record of triangle_test, bit for bit, for any floats including NaN and infinities.
+/// Returns the record that triangle_test computes, bit for bit, also for NaN and infinities.
 [[nodiscard]] SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle);
 
 /// Returns whether a hit is sure (set_up_pkg::is_good_hit). `grazing` is HitDistance::error.

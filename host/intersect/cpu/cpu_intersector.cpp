@@ -28,7 +28,7 @@ void PointWriter::write() {
     const auto plane = [&](std::size_t i) { return std::min(first + i, planes_ - 1); };
     const auto origin = [&](std::size_t i) { return rays_[firsts_[plane(i)]].origin; };
     const auto corners = [&](std::size_t i) { return bvh_.corners_of(primitives_[plane(i)]); };
-    // Initialised in place: copies would stall on the words just stored.
+    // Initialised in place: a copy would have to wait for the words just stored.
     const PlaneViews views{{origin(0), origin(1), origin(2), origin(3)},
                            {corners(0), corners(1), corners(2), corners(3)}};
     float words[4][kQuad];
@@ -42,7 +42,7 @@ void PointWriter::write() {
     using Floats = NativeFloats<code()>;
     constexpr std::size_t kHits = kLanesOf<Floats>;
     for (std::size_t first = 0; first < count_; first += kHits) {
-      // Each row holds one hit, and after transposing one word of four hits. A ray's load starts
+      // Each row holds one hit or, after transposition, one word of four hits. A ray's load starts
       // one word before the direction.
       FloatQuad rays[kHits / kQuad][kQuad], planes[kHits / kQuad][kQuad];
       std::uint32_t number[kHits];

@@ -12,8 +12,8 @@
 
 namespace raygate {
 
-/// Traces rays with a common origin in packets of 64, others one by one. P has the bits of the
-/// hit-test unit and is computed once for each nearest hit.
+/// Traces rays with a common origin in packets of 64, others one by one. Hit points have the bits
+/// of the hit-test unit. They are computed only for nearest hits.
 class CpuIntersector : public Intersector {
  public:
   /// `bvh` must outlive this object.
@@ -29,7 +29,7 @@ class CpuIntersector : public Intersector {
   IntersectCounters counters_;
 };
 
-/// Computes P and its error, bit for bit as set_point does, and writes them to hits of a query.
+/// Computes hit points and their errors, bit for bit as set_point does, and writes them to `hits`.
 class PointWriter {
  public:
   static constexpr std::size_t kMost = 256;  ///< maximum of count()
@@ -48,7 +48,7 @@ class PointWriter {
   RAYGATE_INLINE void add(std::uint32_t number, std::uint32_t primitive) {
     std::uint16_t unused = 0xFFFF;
     std::uint16_t& plane = is_common_ ? last_[primitive % kPlanes] : unused;
-    // Branchless, as a branch would be unpredictable.
+    // Branchless, because a branch would be unpredictable.
     const bool known = (plane < planes_) & (primitives_[plane % kPlanes] == primitive);
     plane = static_cast<std::uint16_t>(known ? plane : planes_);
     primitives_[planes_] = primitive;
@@ -81,8 +81,8 @@ class PointWriter {
   }
 
  private:
-  /// Computes P from the plane and direction of each lane, and writes it to hit(lane). `largest` is
-  /// the largest exponent field of N.
+  /// Computes the hit point from the plane (n, d) and direction of each lane, and writes it to
+  /// hit(lane). `largest` is the largest exponent field of n.
   template <class Floats, class Hit>
   static RAYGATE_INLINE void write_lanes(const Floats (&n)[3], const Floats& d,
                                          const IntOf<Floats>& largest, const Floats (&direction)[3],
@@ -117,14 +117,14 @@ class PointWriter {
   std::size_t count_ = 0;
   std::uint32_t primitives_[kPlanes + 1] = {};  // primitive of each plane
   std::uint32_t firsts_[kPlanes + 1];           // a ray that hits each plane
-  // Numbers of planes have 16 bits, as 8-bit numbers might alias any other variable.
+  // Indices of planes have 16 bits, because compilers assume that 8-bit types alias any variable.
   std::uint16_t last_[kPlanes] = {};  // by hash of a primitive: its last plane
   std::uint32_t numbers_[kMost];      // hits to write: their rays and planes
   std::uint16_t plane_of_[kMost];
   float words_[kPlanes + kQuad][4];  // N and d of planes, computed four by four
 };
 
-// The two searches of CpuIntersector. `hits` are initialised to misses; misses are not counted.
+// The two searches of CpuIntersector. The caller initialises `hits` to misses and counts misses.
 
 /// Intersects rays with a common origin in packets.
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,

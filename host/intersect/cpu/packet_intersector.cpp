@@ -21,7 +21,7 @@ struct RayPacket {
   static constexpr int kGroups = 8, kRays = kGroups * kLanes;
 
   FloatLanes direction[3][kGroups];
-  LaneMask negative[3][kGroups];  ///< rays with a negative component
+  LaneMask negative[3][kGroups];  ///< by axis and group: rays whose component is negative
   LaneMask usable[kGroups];       ///< see is_usable; 0 for absent rays
   std::uint32_t octants;          ///< bit i: some usable ray may be in octant i
 
@@ -34,8 +34,8 @@ struct RayPacket {
   }
 };
 
-/// Bounding cones of rays in one octant. Lane g belongs to group g; absent groups have radius 0. On
-/// each axis |I_k - center[k][g]| <= radius[k][g].
+/// Bounding cones of rays in one octant. Lane g belongs to group g; absent groups have radius 0.
+/// Component k of each direction in group g differs from center[k][g] by at most radius[k][g].
 struct Cones {
   LaneMask active[RayPacket::kGroups];  ///< rays of each group
   LaneMask groups;                      ///< groups with any ray
@@ -83,7 +83,7 @@ struct ConeTraversal {
   IntLanes low[kGroups], high[kGroups];  ///< bounds of t of each ray's nearest hit
   IntLanes primitive[kGroups];           ///< primitive of each ray's nearest hit; -1: none
   IntLanes skip_id[kGroups];             ///< primitive that each ray ignores; -1: none
-  IntLanes enough[kGroups];              ///< distance; a hit that is surely nearer ends the ray
+  IntLanes enough[kGroups];              ///< distance; a hit surely nearer than this ends the ray
   std::uint64_t going;                   ///< rays that continue
   float cutoff;                          ///< boxes beyond this are skipped
   int depth;                             ///< number of entries of the stack
@@ -98,8 +98,7 @@ struct ConeTraversal {
   }
 };
 
-/// Returns distances beyond which boxes can be skipped for rays with maximum distances `high` (see
-/// cutoff_beyond).
+/// Returns a cutoff for each ray: at least cutoff_beyond(high) for active rays, -1 for others.
 RAYGATE_INLINE FloatLanes cutoffs_beyond(const IntLanes& high, LaneMask active) {
   constexpr float kGrow = 1.0f + 0x1p-20f;
   const IntLanes going = lanes_of(active);
@@ -131,7 +130,7 @@ RAYGATE_INLINE void load_directions(const float* words, FloatQuad (&components)[
 /// Loads up to 64 rays. Returns a mask of the rays that are usable but not scaled.
 std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
   return in_vectors([&](auto) RAYGATE_BODY {
-    LaneMask positive[3] = {}, negative[3] = {};  // not 0 if any ray is
+    LaneMask positive[3] = {}, negative[3] = {};  // by axis: rays of any group with such components
     std::uint64_t unscaled = 0;
     for (int group = 0; group < RayPacket::kGroups; ++group) {
       const std::size_t begin = std::size_t(group) * kLanes;
@@ -245,7 +244,8 @@ RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   walk.split |= 1u << group;
 }
 
-/// Returns the children that any of `rays`, of these groups, may meet; entry[i] is the distance.
+/// Returns the children that any of `rays`, in `groups`, may meet. Sets entry[i] to a lower bound
+/// of the distance at which a ray enters child i.
 template <Vectors kCode>
 RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& node,
                                  std::uint64_t rays, LaneMask groups, FloatLanes& entry) {
@@ -273,8 +273,8 @@ RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
   walk.stack[place] = next;
 }
 
-/// Up to this many rays are tested against a node one by one if in several groups. Without this,
-/// light rays of `build/lab rays` trace at 0.7 times the rate on sphereflake, 0.85 on landscape.
+/// Up to this many rays are tested against a node one by one if they are in several groups. Without
+/// this, light rays of `build/lab rays` have 0.7 times the rate on sphereflake, 0.85 on landscape.
 constexpr int kFewRays = 8;
 
 /// Does the work of step_through for a few rays.
@@ -352,7 +352,7 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
   }
 }
 
-/// Returns I . E, or I . N, for eight directions.
+/// Returns the dot products of eight directions and a plane of a record.
 RAYGATE_INLINE FloatLanes side_of(const FloatLanes (&direction)[3], const QuadRecord& record,
                                   int plane, int triangle) {
   return (direction[0] * record.word(plane, 0, triangle) +
@@ -360,9 +360,9 @@ RAYGATE_INLINE FloatLanes side_of(const FloatLanes (&direction)[3], const QuadRe
          direction[2] * record.word(plane, 2, triangle);
 }
 
-/// Replaces bounds of |d|, in `low` and `high`, by bounds of t = |d| / (I . N). I . N is positive
-/// and between `least`, which may be negative, and `most`. Each bound has four roundings; a
-/// quotient that underflows is between 0 and the smallest normal float.
+/// Replaces bounds of |d|, in `low` and `high`, by bounds of t = |d| / V. V, the product of
+/// direction and normal, is positive and in [least, most]; `least` may be negative. kUp and kDown
+/// cover four roundings. A quotient that underflows is between 0 and the smallest normal float.
 template <class Lanes>
 RAYGATE_INLINE void bound_distance(Lanes& low, Lanes& high, const Lanes& least, const Lanes& most) {
   constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
@@ -389,7 +389,7 @@ RAYGATE_INLINE void test_group(const ConeTraversal& walk, const QuadRecord& reco
                                int group, LaneMask tested, Verdict<IntLanes>& verdict) {
   const auto& from = walk.block->direction;
   const FloatLanes direction[3] = {from[0][group], from[1][group], from[2][group]};
-  FloatLanes worst = side_of(direction, record, 0, triangle);  // the least I . E of the edges
+  FloatLanes worst = side_of(direction, record, 0, triangle);  // the least product of the edges
   for (int plane = 1; plane < 3; ++plane) {
     worst = minimum(side_of(direction, record, plane, triangle), worst);
   }
@@ -406,9 +406,9 @@ RAYGATE_INLINE void test_group(const ConeTraversal& walk, const QuadRecord& reco
   verdict.high = bits_in(high);
 }
 
-/// Returns whether so few rays reach a leaf that tests ray by ray are faster. Without this, `make
-/// speed` has 6 to 13 % fewer camera and shadow rays per second on sphere and landscape, and 11 %
-/// fewer camera rays on teapot.
+/// Returns whether so few rays reach a leaf that tests ray by ray are faster. Without such tests,
+/// `make speed` has 6 to 13 % fewer camera and shadow rays per second on sphere and landscape, and
+/// 11 % fewer camera rays on teapot.
 RAYGATE_INLINE bool is_sparse(std::uint64_t rays, LaneMask groups, std::uint32_t triangles) {
   return static_cast<std::uint32_t>(std::popcount(rays)) <
          2 * static_cast<std::uint32_t>(std::popcount(groups)) * triangles;
@@ -448,7 +448,7 @@ constexpr int kCacheBits = 5;  ///< log2 of the number of entries
 
 constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float
 
-/// Loads one query option for a group's rays. Lanes beyond the last ray keep their values.
+/// Loads one option of a query for the rays of a group. Lanes beyond the last ray do not change.
 template <class Wish>
 RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first, IntLanes& lanes) {
   static_assert(sizeof(Wish) == sizeof(std::int32_t));
@@ -683,8 +683,8 @@ class PacketIntersector {
     }
   }
 
-  /// Decides exactly whether a ray hits a primitive, unless that is `sure`, and whether that hit is
-  /// the nearest. `t` is read only if `sure`. Returns whether the primitive is the nearest hit now.
+  /// Decides exactly whether a ray hits a primitive, unless `sure`, and whether this hit is the
+  /// nearest. `t` is read only if `sure`. Returns whether the primitive is the nearest hit now.
   bool resolve(ConeTraversal& walk, int group, int lane, std::int32_t primitive, bool sure,
                const Interval& t) {
     const std::uint32_t number = walk.number(group, lane);
@@ -705,7 +705,7 @@ class PacketIntersector {
     return true;
   }
 
-  /// Writes the nearest hits. Computes their P at once, or adds them to `points_`.
+  /// Writes the nearest hits. Computes their points immediately, or adds the hits to `points_`.
   void finish(const ConeTraversal& walk) {
     in_vectors([&](auto code) RAYGATE_BODY {
       const auto& block = walk.block->direction;

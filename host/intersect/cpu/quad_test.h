@@ -16,84 +16,85 @@ namespace raygate {
 
 // Why a sure result is correct
 //
-// Let z be the axis along which the ray goes farthest, so that |s_x|, |s_y| <= 1 for s_x = I_x /
-// I_z and s_y. Woop, Benthin and Wald ("Watertight ray/triangle intersection", 2013) shear a corner
-// p to the point (x, y) = ((p-O)_x - s_x (p-O)_z, (p-O)_y - s_y (p-O)_z): the ray is the origin of
-// that plane, and the side on which it passes the edge from corner i to corner j is the sign of x_i
-// y_j - y_i x_j, which is I . (A x B) times a factor common to all three edges. Two edges of
-// opposite signs are a miss. If all have one sign, the line of the ray goes through the triangle's
-// interior: a hit if that is in front of O, a miss if it is behind. This does not need the
-// tie-breaking of edge_side, which matters only if a sign is 0.
+// Let O be the ray's origin, I its direction, and z the axis of I's largest component, so that
+// |s_x|, |s_y| <= 1 for s_x = I_x / I_z and s_y = I_y / I_z. Woop, Benthin and Wald ("Watertight
+// ray/triangle intersection", 2013) shear a corner p to the point
+//   (x, y) = ((p-O)_x - s_x (p-O)_z, (p-O)_y - s_y (p-O)_z).
+// The ray becomes the origin of the sheared plane. It passes the edge from corner i to corner j on
+// the side given by the sign of x_i y_j - y_i x_j (edge_side's product times a common factor). Two
+// edges of opposite signs are a miss. If all have one sign, the ray's line goes through the
+// triangle's interior: a hit if the crossing is in front of O, a miss if it is behind.
 //
-// Let u = 2^-24, capitals be the float32 results, m >= |p-O| on each axis, for all three corners,
-// as computed, and S the sum of the six |X_i|, |Y_i|.
+// Steps 1 to 4 bound the error of x_i y_j - y_i x_j, computed in float32. Let u = 2^-24, the unit
+// roundoff; X, Y, Z the computed x, y, (p-O)_z; m at least the computed |p-O| of all corners on all
+// axes; and S the sum of the six |X_i|, |Y_i|.
 //
-// 1. A difference p-O has an error of u times itself, s_x and s_x Z of u times themselves or
-//    2^-150, and their difference X_i of u |X_i|. All these are at most m, but |X_i| <= 2.0001 m:
-//    |X_i - x_i| < (1 + 3 + 2.001) u m + 2^-149 (1 + m) < 6.01 u m = e.
-// 2. X_i Y_j - x_i y_j = X_i (Y_j - y_j) + y_j (X_i - x_i), so the error of the exact difference of
-//    products is less than e (|X_i| + |Y_j| + |Y_i| + |X_j|) + 2 e^2 <= 6.01 u m S + 72.3 u^2 m^2.
-// 3. The two products have errors of u times themselves or 2^-150, and their difference has one of
-//    u times itself: less than 2.001 u (|X_i Y_j| + |Y_i X_j|) + 2^-149 in all. |X_i Y_j| <= 1.001
-//    m (|X_i| + |Y_j|), as no factor is above 2.0001 m: less than 2.01 u m S + 2^-149 in all.
+// 1. Error of X_i (Y_i likewise): (p-O)_x has one relative error of u, s_x Z has three, and their
+//    difference one more. Underflow adds up to 2^-149 (1 + m). (p-O)_x and s_x Z are at most m, and
+//    |X_i| <= 2.0001 m: |X_i - x_i| < (1 + 3 + 2.001) u m + 2^-149 (1 + m) < 6.01 u m = e.
+// 2. Effect on the result: X_i Y_j - x_i y_j = X_i (Y_j - y_j) + y_j (X_i - x_i), so both products
+//    together change by less than e (|X_i| + |Y_j| + |Y_i| + |X_j|) + 2 e^2, which is at most
+//    6.01 u m S + 72.3 u^2 m^2.
+// 3. Roundings of two products and their difference: 2.001 u (|X_i Y_j| + |Y_i X_j|) + 2^-149.
+//    This is less than 2.01 u m S + 2^-149, because factors are at most 2.0001 m.
 // 4. If 2^-20 <= m <= 2^40, nothing overflows, the 2^-149 (1 + m) of step 1 is less than 2^-60 u m,
 //    and the 2^-149 of step 3 less than 2^-60 u^2 m^2. Otherwise nothing is sure.
 //
-// Sum: less than 8.02 u m S + 72.4 u^2 m^2. The computed bound is b = m (8.5 u S + 2^-41 m), where
-// 2^-41 = 128 u^2; the relative error of rounding b is less than 12 u. m is computed as the largest
-// |Z_i| plus S: on the other axes |p-O|_x = |x + s_x (p-O)_z| as computed is at most |X_i| + |Z_i|
-// up to (1 + 3) u m, and similarly for y, which the same margin covers.
+// Sum: less than 8.02 u m S + 72.4 u^2 m^2. The code computes the bound b = m (8.5 u S + 2^-41 m),
+// where 2^-41 = 128 u^2. Rounding changes b by less than 12 u b. The code computes m as the largest
+// |Z_i| plus S. This is large enough up to 4 u m, because |(p-O)_x| is at most |X_i| + |Z_i| up to
+// the errors of step 1; the margin of b covers the 4 u m.
 //
 // Position on the z axis
 //
-// Let U_i be the three differences, all surely of one sign, say > b; they belong to the corners
-// opposite their edges. z* = (sum u_i z_i) / (sum u_i), from the exact u_i = U_i +- b; let D be the
-// sum of the U_i as computed, D' the exact sum, D* that of the u_i, and R the z of the farthest
-// corner minus that of the nearest one.
+// Steps 5 and 6 bound the error of z*, the position of the hit relative to O along z. Let U_i be
+// the three computed differences, numbered by the corner opposite the edge, and let all U_i > b
+// (all U_i < -b is symmetric). The exact differences w_i are within b of U_i. Then
+// z* = (sum w_i z_i) / (sum w_i) for the corners' z_i = (p-O)_z. Let D* = sum w_i, D' = sum U_i, D
+// the computed D', and R the computed range of the corners' z, the largest minus the least.
 //
-// 5. The weights are U_i / D' instead of u_i / D*. Each has an error of |U_i (D* - D') + D' (U_i -
-//    u_i)| / (D' D*) <= (3 b U_i / D' + b) / D*, and three of them one of 6 b / D*. D* > D' - 3 b.
-//    As both sets of weights sum to 1, z* has an error of less than 6 b R / (D' - 3 b). |U_i| is at
-//    most a product of two of the three |X_j| + |Y_j|, so D' <= S^2 / 3 <= m S / 3, and D, with an
-//    error of 2 u times itself, differs from D' by less than 0.1 b: D' - 3 b > D - 3.2 b. R has an
-//    error of 2 u max |Z_i|. Its factor matters only below 1, as z* is between the corners' z
-//    anyway, so z* has another error of at most 2 u max |Z_i|.
-// 6. The roundings of three products, two sums of them, two sums in D, a quotient, the difference
-//    Z_i and that with the bound add less than 9 u of the largest |Z_i|, as weights are positive
-//    and sum to 1. A product that underflows has an error of 2^-150, that is 2^-150 / D' of z,
-//    where D' > 3 b > 2^-80: less than 2^-68 in all, and m 2^-45 >= 2^-65.
+// 5. The code uses weights U_i / D' instead of w_i / D*. The error of a weight is at most
+//    |U_i (D* - D') + D' (U_i - w_i)| / (D' D*) <= (3 b U_i / D' + b) / D*, so three have 6 b / D*.
+//    Both sets of weights sum to 1, and D* > D' - 3 b: the error of z* is below 6 b R / (D' - 3 b).
+//    Each |U_i| is at most a product of two of the three |X_j| + |Y_j|: D' <= S^2 / 3 <= m S / 3.
+//    D differs from D' by at most 2 u D' < 0.1 b, so D' - 3 b > D - 3.2 b.
+//    R has an error of 2 u max |Z_i|. Its factor matters only below 1, since z* is also between the
+//    corners' z. So this error adds at most 2 u max |Z_i| to z*.
+// 6. Each term has at most eight roundings: of Z_i, a product, two sums, two sums in D, a quotient,
+//    and the sum with the bound. Weights are positive and sum to 1: less than 9 u max |Z_i| in all.
+//    Underflow of a product adds 2^-150 / D' < 2^-70, because D' > 3 b > 2^-80. Three of these are
+//    less than 2^-68 < 2^-45 m.
+//
+// So z* is within 6.5 b R / (D - 3.2 b) + 16 u max |Z_i| + 2^-45 m of the computed quotient,
+// including the rounding of this bound, and within 16 u max |Z_i| of the range of the corners' z.
 //
 // The code uses O-p instead of p-O, so that the instruction that subtracts a corner also loads it.
-// The magnitudes of all sums, differences and products of steps 1 to 4 are the same.
-//
-// So z* is within 6.5 b R / (D - 3.2 b) + 16 u max |Z_i| + 2^-45 m of the quotient, including the
-// rounding of this bound, and within 16 u max |Z_i| of the range of the corners' z.
+// All magnitudes in steps 1 to 4 are the same.
 //
 // Rounded corners and rays
 //
-// Let the corners, the origin and the direction be rounded to nearest, M the largest coordinate of
-// the corners, F that of the origin (each 0 if exact), and r = u (M + F), which exceeds the error
-// of a difference. Each component of a rounded direction has another relative error of u, and each
-// s one of 2 u.
+// Let binary64 corners, origin and direction be rounded to float. Let M be the largest coordinate
+// of the corners, F that of the origin (each 0 if exact), and r = u (M + F), which exceeds the
+// additional error of p-O. A rounded direction adds a relative error of 2 u to s_x and s_y.
 //
 // 1. e grows to 8.02 u m + 2.001 r <= 8.02 u w, for w = m + (M + F) / 4. If the direction is exact,
 //    e = 6.01 u m + 2.001 r <= 6.01 u w, for w = m + (M + F) / 3: the bound above with w as m.
-// 2. The error is less than e S + 2 e^2 <= 8.02 u w S + 128.7 u^2 w^2; with step 3, 10.03 u w S +
-//    128.8 u^2 w^2. The computed bound is b = w (10.6 u S + 2^-40 w).
-// 6. Each z has another error of r, and R one of 2 r, so 3.2 r are added to 16 u max |Z_i|.
+// 2. The error is less than e S + 2 e^2 <= 8.02 u w S + 128.7 u^2 w^2. With step 3, it is less than
+//    10.03 u w S + 128.8 u^2 w^2. The computed bound is b = w (10.6 u S + 2^-40 w).
+// 6. Each z has another error of r, and R one of 2 r, so 3.2 r is added to 16 u max |Z_i|.
 
 /// A ray prepared for tests against many quads of triangles.
 struct ShearedRay {
   std::int32_t axes[3];  ///< x, y, z of the shear; the ray goes farthest along the last one
   float origin[3];       ///< origin along these axes
   float shear[2];        ///< s_x, s_y
-  float way;             ///< I_z
+  float way;             ///< direction component along the z axis of the shear
 
   ShearedRay() = default;
   /// The direction must be usable (see is_usable).
   RAYGATE_INLINE explicit ShearedRay(const Ray& ray);
 
-  /// Returns the sign bit of -I_z, which is that of (O-p)_z for points p in front of the origin.
+  /// Returns the sign bit of (O-p)_z for the ray's origin O and points p in front of it.
   [[nodiscard]] RAYGATE_INLINE std::int32_t sign_ahead() const {
     return std::bit_cast<std::int32_t>(-way) & std::numeric_limits<std::int32_t>::min();
   }
@@ -137,7 +138,7 @@ RAYGATE_INLINE ShearedRay::ShearedRay(const Ray& ray) {
 /// The parts of a test that are rounded to binary32.
 struct RoundedParts {
   bool corners = false, direction = false;
-  float reach = 0.0f;  ///< F, or 0 if the origin is exact
+  float reach = 0.0f;  ///< largest coordinate of the origin (F above), or 0 if the origin is exact
 
   RoundedParts() = default;
   RoundedParts(bool of_corners, const ExactRay& ray)
@@ -149,7 +150,7 @@ struct RoundedParts {
 /// Results of a quad test. Bit i of the masks, and lane i, belong to triangle i.
 struct QuadVerdict {
   LaneMask hit;    ///< sure hits, in front of the origin
-  LaneMask level;  ///< the line surely hits, but perhaps behind the origin; is_ahead decides
+  LaneMask level;  ///< the ray's line surely hits, perhaps behind the origin; is_ahead decides
   LaneMask doubt;  ///< neither hit, nor level, nor a sure miss
   /// Bounds of a hit's position along the ray's longest axis, for triangles in any of the masks.
   FloatQuad low, high;
@@ -157,12 +158,12 @@ struct QuadVerdict {
 
 /// Intermediate results, from find_sides() to judge_sides().
 struct QuadSides {
-  FloatQuad z[3];  ///< z of O-p
-  FloatQuad across[3];
+  FloatQuad z[3];             ///< z of origin minus corner
+  FloatQuad across[3];        ///< U_i above, by corner
   FloatQuad lowest, highest;  ///< least and largest of `across`
-  FloatQuad farthest, m;
-  FloatQuad rest;   ///< 3.2 r; only if something is rounded
-  FloatQuad bound;  ///< NaN if nothing is sure, so that comparisons with it are false
+  FloatQuad farthest, m;      ///< max |Z_i| and m (or w) above
+  FloatQuad rest;             ///< 3.2 r above; set only if something is rounded
+  FloatQuad bound;            ///< b above; NaN if nothing is sure: comparisons with NaN are false
 };
 
 /// Returns which of 1 to 4 triangles the ray does not surely miss by its edges. Coordinate k of
@@ -251,34 +252,35 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
 
 // Why a sure result is correct
 //
-// As in polygon_record.cpp, but all in float32. Let u = 2^-24, A, B, C the corners minus O, E = A x
-// (B-A) an edge plane, L the sum of the magnitudes of its six products, and I a direction with
-// |I_i| < 2. Coordinates of A, B and C are at most 2^40.
+// These steps bound the errors of I . E, I . N and d = A . N in float32. Let u = 2^-24, the unit
+// roundoff; A, B, C the corners minus the ray's origin, with coordinates of at most m <= 2^40;
+// E = A x (B-A) an edge plane (the other two follow cyclically); N = (B-A) x (C-B); L the sum of
+// the magnitudes of the six products of E or N; and I a direction with |I_i| < 2.
 //
-// 1. Factors are differences with an error of u times themselves, so a product has an error of 3 u
-//    times itself, or 2^-150 if it underflows, and their difference u more. The errors of E's words
-//    sum to at most 4 u L + 2^-147, and their magnitudes to at most L (1 + 4 u).
-// 2. I . E in float32, in any order, rounds a word at most three times: its error is 3.0001 u
-//    |I|.|E|, plus 2^-148. So |float32(I . E) - I . (A x B)| < 2 (4 + 3.001) u L + 2^-145 < 14.1 u
-//    L + 2^-145. The computed bound, 14.5 u L + 2^-100 for the largest of three L, also covers its
-//    own relative rounding error, 7 u.
-// 3. Likewise N = (B-A) x (C-B), with its own L: I . N has an error of less than 14.5 u L + 2^-100.
-//    A . N has three more factors with errors of u times themselves, of size m at most: its error
-//    is less than m (4 + 3.001 + 1.001) u L + 2^-105 < 8.5 u m L + 2^-100.
+// 1. Words of E: factors are differences with a relative error of u. So a product has a relative
+//    error of 3 u, or an error of 2^-150 if it underflows. Their difference adds u. The errors of
+//    E's words sum to at most 4 u L + 2^-147, and their magnitudes to at most L (1 + 4 u).
+// 2. I . E: in float32, in any order, a word takes part in at most three roundings. These have an
+//    error of 3.0001 u |I|.|E| + 2^-148. So |float32(I . E) - I . (A x B)| is less than
+//    2 (4 + 3.001) u L + 2^-145 < 14.1 u L + 2^-145. The computed bound, 14.5 u L + 2^-100 for the
+//    largest of three L, also covers its own relative rounding error, 7 u.
+// 3. I . N has likewise an error of less than 14.5 u L + 2^-100. In A . N, factors are at most m,
+//    not 2, and have another relative error of u: its error is less than
+//    m (4 + 3.001 + 1.001) u L + 2^-105 < 8.5 u m L + 2^-100.
 //
-// A hit has all three I . E of the sign of d = A . N (see exact.cpp), and t = d / (I . N). All
-// words are stored multiplied by the sign of d, if float32 is sure of it.
+// For a hit, all three I . E have the sign of d = A . N (see exact.cpp), and t = d / (I . N). All
+// words are stored multiplied by the sign of d, if float32 is sure of that sign.
 //
-// If the corners are rounded from exact ones, let M be their largest coordinate, r = u M, s the
-// largest coordinate of a side, and m that of A, B and C. A, B, C have errors of r, sides of 2 r.
+// If the corners are rounded from binary64, let M be their largest coordinate, r = u M, and s the
+// largest coordinate of a side. Then A, B, C have errors of r, and sides of 2 r.
 //
-// 1. A product of A and a side has an error of r |side| + 2 r |A| + 2 r^2, six of them 2 r |side|_1
-//    + 4 r |A|_1 + 12 r^2 <= 6 r s + 12 r m + 12 r^2. That of I . E is at most twice as large, so
-//    26 r (m + s / 2 + r) are added to its bound.
-// 2. |N|_1 has an error of 4 r (|B-A|_1 + |C-B|_1) + 24 r^2 <= 24 r (s + r). That of I . N is at
-//    most twice as large, so 50 r (s + r) are added.
-// 3. The error of A . N is r |N|_1, for the exact N, plus m times that of N: 1.1 r L + 26 (m + r) r
-//    (s + r) are added.
+// 1. A product of A and a side has an error of r |side| + 2 r |A| + 2 r^2. Six products have
+//    2 r |side|_1 + 4 r |A|_1 + 12 r^2 <= 6 r s + 12 r m + 12 r^2. The error of I . E is at most
+//    twice as large, so 26 r (m + s / 2 + r) is added to its bound.
+// 2. |N|_1 has an error of 4 r (|B-A|_1 + |C-B|_1) + 24 r^2 <= 24 r (s + r). The error of I . N is
+//    at most twice as large, so 50 r (s + r) is added to its bound.
+// 3. The error of A . N is r |N|_1, for the exact N, plus m times the error of N:
+//    1.1 r L + 26 (m + r) r (s + r) is added to its bound.
 
 /// Four planes of each of four triangles: the planes of the edges, and N.
 struct alignas(sizeof(FloatLanes)) QuadRecord {
@@ -286,8 +288,8 @@ struct alignas(sizeof(FloatLanes)) QuadRecord {
 
   /// Words times the sign of d. Plane p is [p / 2][axis][p % 2]; word i belongs to triangle i.
   float planes[2][3][2][kQuad];
-  float bounds[kQuad];            ///< |float32(I . E) - exact| < bound, for each edge
-  float normal_bound[kQuad];      ///< likewise for I . N
+  float bounds[kQuad];            ///< |float32(I . E) - exact| < bound, for each edge E
+  float normal_bound[kQuad];      ///< |float32(I . N) - exact| < bound
   float low[kQuad], high[kQuad];  ///< bounds of |d|; low = 0 if the sign of d was unsure
   std::int32_t flip[kQuad];       ///< the sign bit of d, as computed or set
   LaneMask unsure;                ///< triangles whose d may have the other sign
@@ -297,7 +299,7 @@ struct alignas(sizeof(FloatLanes)) QuadRecord {
   }
 };
 
-/// A bound is kQuadBound u L, see above.
+/// The bound of I . E or I . N is kQuadBound u L + 2^-100 (step 2 above).
 inline constexpr float kQuadBound = 14.5f;
 
 /// Computes the record of 1 to 4 triangles, with corners in the format of test_quad.

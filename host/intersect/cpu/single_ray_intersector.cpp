@@ -18,25 +18,26 @@
 
 // Why no true hit is culled
 //
-// Distances are measured along the ray's longest axis: they are p t, where p is the magnitude of
-// the direction's largest component, in [1, 2) (RayTraversal::t_scale). The derivation of
-// packet_traversal.cpp holds with p t for t and p / I for 1 / I:
-//  - t I = x - O becomes (p t) (I / p), and p / I is one quotient, rounded once.
-//  - p / |I| >= 1 > 1/2, so an underflow of a product is covered as there.
-//  - For |I| < 2^-100, p / |I| >= 2^100, so p 2^100, which is exact, is a valid inverse_near.
+// Depths are distances along the ray's longest axis: p t, where p in [1, 2) is the magnitude of the
+// direction's largest component (RayTraversal::t_scale). The proof in packet_traversal.cpp also
+// holds with p t in place of t and p / I in place of 1 / I, on each axis with origin O and
+// direction I, for a hit at x:
+//  - x - O = t I = (p t) (I / p), and p / I is one quotient, rounded once like 1 / I.
+//  - p / |I| >= 1 > 1/2, so the widening of boxes covers an underflow of a product.
+//  - For |I| < 2^-100, inverse_near is p 2^100, which is exact and at most p / |I|.
 //  - Along the longest axis, p t = |x - O| <= 2^127.
 // For a ray that is rounded to binary32, see spread().
 
 namespace raygate {
 namespace {
 
-/// State of one ray. Many rays are interleaved, so each step uses few cache lines. A node needs the
-/// first, a leaf the second; both need the third, which has the bottom of `keys`, and the line with
-/// the bottom of `children`.
+/// State of one ray. Many rays are interleaved, so each step uses few cache lines. A step at a node
+/// reads the first line, and a step at a leaf the second. Both use the third line, with the bottom
+/// of `keys`, and the line with the bottom of `children`.
 struct alignas(64) RayTraversal {
-  // Box tests, by axis. The inverses are those of PacketBounds with reversed sign, as the
-  // instruction that subtracts in (O - near) (-inverse) also loads the plane. near_at and far_at
-  // are byte offsets in a node of the planes that the ray meets first and last.
+  // Box tests, by axis. Inverses are those of PacketBounds, negated: then the instruction that
+  // subtracts in (origin - near) * minus_inverse_near also loads the plane. near_at and far_at are
+  // byte offsets in a node of the planes that the ray meets first and last.
   float origin[3], minus_inverse_near[3], minus_inverse_far[3];
   std::uint32_t near_at[3], far_at[3];
   float cutoff;  ///< cutoff_beyond() of the nearest hit
@@ -57,7 +58,7 @@ struct alignas(64) RayTraversal {
   Bvh::Child children[1 + Bvh::kStackSize + Bvh::kWidth];
 
   // Set only if corners or the ray are rounded:
-  double exact_scale;    ///< p of the exact direction
+  double exact_scale;    ///< largest magnitude of the exact direction's components
   float exit_origin[3];  ///< see spread()
   RoundedParts rounding;
 
@@ -232,7 +233,7 @@ RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk,
   met.mask = mask;
 }
 
-/// Pushes the children that the ray meets; branchless for up to two, as branches mispredict.
+/// Pushes the children that the ray meets. Branchless for up to two, to avoid mispredictions.
 template <Vectors kCode>
 RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   constexpr std::int32_t kNumber = Bvh::kWidth - 1;
@@ -245,7 +246,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   const auto push = [&](int first, int last) __attribute__((always_inline)) {
     for (int i = first; i < last; ++i) to_children[i] = met.children[to_keys[i] & kNumber];
   };
-  // Handles up to two children one by one, as no register holds all eight keys.
+  // Handles up to two children one by one, because no register holds all eight keys.
   if (kCode == Vectors::kBaseline && count <= 2) {
     const auto key = [&](int i) __attribute__((always_inline)) {
       return (met.keys[numbers[i] & kNumber] & ~kNumber) | numbers[i];
@@ -289,8 +290,8 @@ RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
 }
 
 /// Traverses the BVH with several rays, interleaved. Tests a leaf's triangles directly from their
-/// corners, by quad_test.h. Exact arithmetic resolves doubts of float32 and orders hits, so
-/// decisions do not depend on the method. `kIsRounded`: whether corners or rays are rounded.
+/// corners (quad_test.h). Exact arithmetic resolves doubts of float32 and orders hits, so results
+/// equal those of other intersectors. `kIsRounded`: whether corners or rays are rounded.
 template <bool kIsRounded>
 class SingleRayIntersector {
  public:
@@ -420,8 +421,7 @@ class SingleRayIntersector {
   }
 
   /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
-  /// memory latency. Choices that depend on a ray select values instead of branching, since
-  /// branches would often be mispredicted.
+  /// memory latency. Choices that depend on a ray avoid branches, which are often mispredicted.
   void walk_all() {
     const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
     in_vectors([&](auto code) RAYGATE_BODY {

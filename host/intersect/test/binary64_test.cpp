@@ -51,8 +51,7 @@ struct Rays {
 
 class Binary64 : public testing::Test {
  protected:
-  /// Returns rays aimed at corners, edges and insides of the triangles. Half of them start nearby,
-  /// some at a corner.
+  /// Returns rays aimed at corners, edges and insides. Half start nearby, some of them at a corner.
   Rays some_rays(const std::vector<Corners>& mesh, int count, bool is_binary64, bool is_common) {
     Rays rays;
     const float size = 2.0f * static_cast<float>(largest(mesh[0][0]));

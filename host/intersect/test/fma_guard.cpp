@@ -23,8 +23,7 @@ void expect(bool holds, const char* what) {
   failed = true;
 }
 
-/// kDirection . kVector is (-kA kA + kA kA) + 0: it is 0 if both products are rounded, and not 0 if
-/// only one is.
+/// kDirection . kVector, (-kA kA + kA kA) + 0, is 0 if both products are rounded, else not 0.
 const glm::vec3 kDirection(kA, kA, 0.0f), kVector(-kA, kA, 0.0f);
 
 RayBundle bundle_of(const PolygonRecord& record) {

@@ -1,5 +1,4 @@
-// The nearest hit does not depend on the order of reports; CheckIntersector detects intersectors
-// that differ.
+// Nearest hits do not depend on the order of reports. CheckIntersector detects wrong hits.
 #include "host/intersect/intersector.h"
 
 #include <gtest/gtest.h>
@@ -134,9 +133,9 @@ TEST(NearestHit, EveryOrderOfReportsGivesTheSame) {
       ASSERT_EQ(bvh.triangle_of(best.primitive), 2u);
     }
   } while (std::ranges::next_permutation(primitives).found);
-  // A doubt is not resolved if it is surely farther than a hit. In the 120 orders, the two nearest
-  // always are resolved, the two an ulp farther if they come before both of these (a third), and
-  // the farthest if it comes first.
+  // A doubt is not resolved if it is surely farther than a known hit. Over all 120 orders, each of
+  // the two nearest is always resolved; each of the two an ulp farther is resolved if it comes
+  // before both nearest ones (40 orders); the farthest is resolved if it comes first (24 orders).
   EXPECT_EQ(counters.exact_inside, 2u * 120 + 2u * 40 + 24);
   EXPECT_GT(counters.exact_depth, 0u);
 }

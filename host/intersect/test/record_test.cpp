@@ -17,7 +17,7 @@ namespace {
 using test::float_dot;
 using test::Random;
 
-/// An origin and a triangle of any shape; it can be a sliver, far away, or have O near its plane.
+/// An origin and a triangle: perhaps a sliver, far away, or with the origin near its plane.
 struct View {
   glm::vec3 origin;
   Corners triangle;
@@ -80,8 +80,8 @@ TYPED_TEST(Record, IsWhatThePaperSays) {
   EXPECT_EQ(record.edges[2], glm::cross(glm::vec3(0, 4, 2), glm::vec3(0, 1, 2)));
 }
 
-// Tries to break the bound: compares float sums with exact ones for directions whose terms nearly
-// cancel, so that all three roundings are as large as those of the terms.
+// Tries to break the bound: compares dot products in float with exact ones, for directions whose
+// terms are large and nearly cancel.
 TYPED_TEST(Record, BoundHolds) {
   double worst = 0.0;
   for (int i = 0; i < 250'000; ++i) {
@@ -132,7 +132,7 @@ TYPED_TEST(Record, SureAnswersAreRightAtEveryScale) {
   EXPECT_GT(of_known_d, 100'000);
 }
 
-// No loader accepts such numbers. No hit with them is sure, and no behaviour is undefined.
+// No loader accepts infinity or NaN. If given them, no hit is sure and no behaviour is undefined.
 TYPED_TEST(Record, WhatIsNotFiniteIsNeverSure) {
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float bad : {infinity, -infinity, infinity - infinity}) {

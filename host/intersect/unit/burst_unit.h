@@ -1,5 +1,5 @@
-// Hit-test units: the interfaces of the pipelined unit (bursts in, nearest hits out) and of the
-// paper's unit, and their reference models in C++, in any arithmetic.
+// Hit-test units: interfaces of the pipelined unit (bursts in, nearest hits out) and of the paper's
+// unit. Also their reference models in C++, in any number format and rounding.
 #pragma once
 
 #include <algorithm>
@@ -35,15 +35,13 @@ struct alignas(32) RayBundle {
   }
 };
 
-/// Tests batches of bundles in two steps, so that the unit is busy while the caller prepares
-/// another batch.
+/// Tests batches of bundles in two steps: the unit works while the caller prepares another batch.
 template <class Result>
 class BatchTester {
  public:
   virtual ~BatchTester() = default;
 
-  /// Starts a batch, which must live until its finish(). At most two batches may be started and not
-  /// finished.
+  /// Starts a batch, which must live until its finish(). At most two batches may be unfinished.
   virtual void start(std::span<const RayBundle> batch) {
     assert(started_count_ < 2);
     started_[started_count_++] = batch;
@@ -84,9 +82,9 @@ struct BurstResult {
   std::uint32_t record = 0;            ///< index into the bundle's records
   Kind kind = Kind::kHit;
   // The fields below are 0 unless the kind is kHit.
-  float t = 0.0f;             ///< d / (I . N), positive and normal
+  float t = 0.0f;             ///< positive and normal
   std::uint32_t t_error = 0;  ///< at most 2^(6 + t_error) floats lie between t and the exact t
-  glm::vec3 point{0.0f};      ///< P = d I / (I . N)
+  glm::vec3 point{0.0f};      ///< hit point P, relative to the ray's origin
 
   friend bool operator==(const BurstResult& a, const BurstResult& b) {  ///< compares all bits
     using Words = std::array<std::uint32_t, sizeof(BurstResult) / 4>;
@@ -99,20 +97,21 @@ struct BurstResult {
 using BurstResults = std::vector<BurstResult>;
 
 /// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest
-/// even after each operation. Every implementation gives the same bits, for every bit pattern:
+/// even after each operation. Every implementation gives the same bits, for every bit pattern.
+/// For a direction I and a record with normal N, d, edges E_k and bounds b_k:
 ///
 ///   U_k = (E_kx Ix + E_ky Iy) + E_kz Iz,  V likewise with N,  t = d / V,  P_k = (d I_k) / V
 ///
 ///   U_k is sure if b_k < |U_k| < infinity (not with a NaN or negative b_k)
 ///   miss   d is 0, or a sure U_k has the opposite sign of d
-///   hit    otherwise, if all U_k are sure, V is normal and has d's sign, its exponent is at most
-///          12 below the largest of N's, and t is a positive normal number
+///   hit    otherwise, if all U_k are sure, V is normal, has d's sign and an exponent at most 12
+///          below the largest exponent of N's words, and t is a positive normal number
 ///   doubt  otherwise
 ///
-/// The error of t is 2^(6 + e), where e is how far V's exponent is below the largest of N's, or 0
-/// (proof in hw/hit_test/hit_test_pkg.sv). Each burst keeps one hit: its first, until a later hit
-/// with a smaller t replaces it. If a later hit and the kept one are no more floats apart than the
-/// sum of their errors, the hit that is not kept is reported as a near tie.
+/// The error of t is 2^(6 + e) floats. Here e is how far V's exponent is below the largest of N's,
+/// or 0 (proof in hw/hit_test/hit_test_pkg.sv). Each burst keeps its hit with the smallest t, or
+/// the first of these. If a later hit and the kept hit are no more floats apart than the sum of
+/// their errors, the hit that is not kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResult> {
  public:
   /// Returns statistics since construction, without `unit_tests`. Idle clocks and stalls are
@@ -121,11 +120,11 @@ class BurstUnit : public BatchTester<BurstResult> {
   [[nodiscard]] virtual HitCounters counters() const = 0;
 };
 
-/// One test of the paper's unit (equation 10): its seven input words.
+/// The seven input words of one test by the paper's unit (equation 10).
 struct PlaneTest {
-  glm::vec3 direction;  ///< I, any finite floats
-  glm::vec3 normal;     ///< H (the record's N)
-  float d;              ///< H . V for a vertex V of the polygon, seen from the ray's origin
+  glm::vec3 direction;  ///< the ray's direction I, any finite floats
+  glm::vec3 normal;     ///< the polygon's normal H (the record's N)
+  float d;              ///< H . V for a vertex V of the polygon, relative to the ray's origin
 };
 
 /// Computes P = d I / (I . H) for a stream of tests, in binary32, rounded to nearest even after
@@ -170,8 +169,8 @@ Interval around(const HitDistance& distance, const Math& math) {
 }
 
 /// Implements BurstUnit in the format and rounding of `Math` (Binary32, or Arithmetic of
-/// host/variants): all floats of records, rays and results are numbers of that format. Results have
-/// the bits of hit_test_pipeline with these parameters.
+/// host/variants). All floats of records, rays and results are numbers of that format. Results have
+/// the bits of hit_test_pipeline for the same format and rounding.
 template <typename Math>
 class BasicReferenceBurstUnit : public BurstUnit {
  public:
@@ -219,7 +218,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return all_sure ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// Returns whether V = `v` can be the divisor of t.
+  /// Returns whether `v`, the computed V = I . N, can be the divisor of t.
   [[nodiscard]] bool is_divisor(const PolygonRecord& record, float v) const {
     return math_.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
            grazing(record.normal, v) <= std::max(math_.fraction_bits() - 11, 0);  // max_grazing
@@ -233,9 +232,9 @@ class BasicReferenceBurstUnit : public BurstUnit {
             static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
   }
 
-  /// Returns BurstUnit's P (equation 10); any NaN is 0x7FC00000.
+  /// Returns BurstUnit's hit point P (the paper's equation 10); any NaN is 0x7FC00000.
   [[nodiscard]] glm::vec3 point(const PolygonRecord& record, const glm::vec3& direction) const {
-    // The paper's accumulator starts from +0, which matters if V is a zero.
+    // The paper's accumulator starts from +0, which decides the sign of v if v is 0.
     const float v = math_.add(0.0f, math_.dot(record.normal, direction));
     glm::vec3 p;
     for (int k = 0; k < 3; ++k) p[k] = math_.divide(math_.multiply(record.d, direction[k]), v);
@@ -245,7 +244,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
  private:
   static constexpr int kTErrorUnit = 6;  // hit_test_pkg::TErrorUnit
 
-  /// Returns how far V's exponent is below the largest of N's.
+  /// Returns how far the exponent of `v` is below the largest exponent of `n`'s components.
   [[nodiscard]] int grazing(const glm::vec3& n, float v) const {
     return std::max(
                {math_.exponent_field(n.x), math_.exponent_field(n.y), math_.exponent_field(n.z)}) -
@@ -297,7 +296,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
 /// The reference model in the host's float arithmetic.
 using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
 
-/// Sets P of a hit, with the bits of BasicReferenceBurstUnit::point in binary32, and its error.
+/// Sets `point`, with the bits of BasicReferenceBurstUnit::point in binary32, and `point_error`.
 inline void set_point(const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit) {
   const auto d = std::bit_cast<std::int32_t>(record.d),
              v = std::bit_cast<std::int32_t>(Binary32::dot(record.normal, direction));

@@ -21,9 +21,10 @@ const RayBundle& bundle_of(const BurstResult& result, std::span<const RayBundle>
   return batch[result.bundle];
 }
 
-/// Returns bounds of the exact t of a sure hit. N is rounded like an edge plane, so the bound of an
-/// edge test also holds for I . N; the relative error of d is at most 2^-24 + 2^-32 (exact.h),
-/// which 2^-23 covers together with the rounding of these lines.
+/// Returns bounds of the exact t = d / (I . N) of a sure hit, for the direction I and the record's
+/// d and normal N. The bound of an edge test also holds for I . N, because N is rounded like edges.
+/// The factors 1 +- 2^-23 cover the relative error of d, at most 2^-24 + 2^-32 (plane_distance),
+/// and the rounding of the computations here.
 Interval distance_bounds(const PolygonRecord& record, const glm::vec3& direction) {
   const double dot = std::abs((record.normal.x * direction.x + record.normal.y * direction.y) +
                               record.normal.z * direction.z);

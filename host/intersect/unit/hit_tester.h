@@ -1,5 +1,5 @@
-// Hit testers: hit-test units, simulated or as reference models, and the software around them; and
-// the intersector that uses them.
+// Hit testers: hit-test units, simulated or as reference models, with the software around them.
+// Also the intersector that uses hit testers.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct HitReport {
   std::uint32_t bundle = 0;  ///< index into the batch
   std::uint32_t lane = 0;
   bool is_sure = false;  ///< a hit in front of the origin; otherwise exact arithmetic decides
-  /// `primitive` is the tag. P has the unit's bits, and is valid if the triangle is hit. `t` is
-  /// valid if the hit is sure; t.high = +infinity if binary32 gives no bound.
+  /// `primitive` is the record's tag. `point` has the unit's bits and is valid if the triangle is
+  /// hit. `t` is valid if the hit is sure; t.high is +infinity if binary32 gives no bound.
   NearestHit hit;
 };
 
@@ -36,8 +36,8 @@ class HitTester : public BatchTester<HitReport> {
   [[nodiscard]] virtual HitCounters counters() const = 0;
 };
 
-/// The pipelined unit decides everything except doubts. Software computes P of doubts and near
-/// ties, and t of near ties, by the same formulas.
+/// The pipelined unit decides everything except doubts. Software computes the hit points of doubts
+/// and near ties, and t of near ties, by the same formulas.
 class PipelineHitTester : public HitTester {
  public:
   explicit PipelineHitTester(std::unique_ptr<BurstUnit> unit) : unit_(std::move(unit)) {}
@@ -57,7 +57,7 @@ class PipelineHitTester : public HitTester {
 /// exclude are not sent to the unit.
 class SerialHitTester : public HitTester {
  public:
-  /// Converts hit.point_error from binary32 to the unit's format.
+  /// Replaces hit.point_error, made for binary32, by the error in the unit's format.
   using Adapt =
       std::function<void(const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit)>;
 

@@ -11,14 +11,14 @@
 namespace raygate {
 namespace {
 
-/// In each round every packet of eight rays traverses the tree to its next leaf. The tests of all
-/// these leaves form a batch for the tester, whose results shorten the rays. One half of the
-/// packets traverses while the tester works on the other. Polygon records are made when a ray
-/// reaches a leaf, once for all rays of its packet with the same origin.
+/// In each round, every packet of eight rays traverses the tree to its next leaf. The tests at all
+/// these leaves form a batch for the tester. The results shorten the rays. One half of the packets
+/// traverses while the tester works on the other half. Polygon records are made when a ray reaches
+/// a leaf, once for all rays of its packet with the same origin.
 class UnitIntersector : public Intersector {
  public:
   UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester)
-      // Batches are long relative to the pipeline's fill time, also if several lanes share them.
+      // Makes batches long relative to the pipeline's fill time, also if several lanes share one.
       : Intersector({.batch = std::max(EngineTraits{}.batch, 256 * tester->enough_tests())}),
         bvh_(bvh),
         tester_(std::move(tester)) {}
@@ -106,8 +106,7 @@ class UnitIntersector : public Intersector {
     }
   }
 
-  /// Fills the batch: advances every packet to its next leaf, repeatedly if there are too few
-  /// tests.
+  /// Fills the batch: advances every packet to its next leaf until there are enough tests.
   void collect(Half& half) {
     half.batch.clear();
     half.owner.clear();
@@ -147,7 +146,7 @@ class UnitIntersector : public Intersector {
     return tests;
   }
 
-  /// Makes the records of a batch, in a vector of the final size, as bundles point into it.
+  /// Makes the records of a batch. The vector is resized first, because bundles point into it.
   void make_records_of(Half& half) {
     std::size_t count = 0;
     for (const RayBundle& bundle : half.batch) count += bundle.record_count;
@@ -172,7 +171,7 @@ class UnitIntersector : public Intersector {
     return packets_[half.owner[report.bundle]].rays[report.lane];
   }
 
-  /// Resolves a report. If that is the nearest hit so far, shortens or ends the ray.
+  /// Resolves a report. If the report is the nearest hit so far, shortens or ends the ray.
   void offer(const Half& half, const HitReport& report) {
     Packet& packet = packets_[half.owner[report.bundle]];
     const std::uint32_t number = ray_of(half, report);
@@ -189,8 +188,8 @@ class UnitIntersector : public Intersector {
     packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);
   }
 
-  /// Tests all other triangles of the bundle exactly after a sure hit was ignored, since a burst
-  /// does not report hits that are surely farther than another.
+  /// Tests all other triangles of the bundle exactly after a sure hit was ignored: the burst may
+  /// not have reported hits that are surely farther than the ignored one.
   void offer_hidden(const Half& half, const HitReport& ignored) {
     const RayBundle& bundle = half.batch[ignored.bundle];
     if (ignored.hit.t.low >= query_.t_max_of(ray_of(half, ignored))) return;

@@ -1,8 +1,8 @@
 """Reads a scene (JSON, OBJ, MTL) and writes it for Mitsuba: PLY files and `mitsuba.json`.
 
-Supports the materials that both renderers have: matte, perfect mirrors, and clear refractive glass. Others, and textures, raise ValueError.
-`mitsuba.json` is the dictionary for mitsuba.load_dict, except for camera transforms ("look_at"), which JSON cannot represent and
-`mitsuba_worker` fills in.
+Supports the materials that both renderers have: matte, perfect mirrors, and clear refractive glass. Others, and textures, raise
+ValueError. `mitsuba.json` is the dictionary for mitsuba.load_dict, except for camera transforms ("look_at"), which `mitsuba_worker`
+makes.
 """
 
 import dataclasses
@@ -176,8 +176,8 @@ def is_closed(mesh: Mesh) -> bool:
 
 
 def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
-    """Returns meshes that emit like a light of raygate. Raygate's lights emit from both sides, Mitsuba's from the front. So the mesh faces
-    the lit side or, if both sides are lit, is doubled, at 1e-5 of the scene's size to each side. Closed lights stay unchanged."""
+    """Returns meshes that emit like a light of raygate. Raygate's lights emit from both sides, Mitsuba's from the front. So the returned
+    mesh faces the lit side. If both sides are lit, there are two meshes, 2e-5 of the scene's size apart. Closed lights stay unchanged."""
     if is_closed(mesh):
         return [mesh]
     a, b, c = mesh.positions[mesh.faces[0]]

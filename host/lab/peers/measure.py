@@ -13,15 +13,15 @@ from host.lab.peers import convert
 from host.lab.rows import ROOT, processors
 from host.lab.steps import render
 
-# Scenes that use only materials that both renderers have.
+# The materials of these scenes exist in both renderers.
 SCENES = ("cornell", "cornell_spheres", "columns", "landscape", "lanterns")
 SIDE = 128  # pixels
 VARIANT = "llvm_ad_rgb"  # Mitsuba's fastest variant for every scene
-# Mitsuba's best samplers. Only these are also timed with other numbers of samples.
+# Mitsuba's best samplers. Only these samplers are also timed with other numbers of samples.
 BEST = ("multijitter", "orthogonal")
 NO_LIGHT_PATHS = "--caustics off"  # Mitsuba's `path` has no light paths
 SEEDS = 10  # per image
-COUNT = 32  # samples per pixel in the tables; samplers may use the next number that they support
+COUNT = 32  # samples per pixel in the tables; samplers may round it up
 REFERENCE_SEED = 1000
 
 

@@ -15,7 +15,7 @@ import drjit
 import mitsuba
 import numpy
 
-# Of Debian 12's versions of libLLVM, this one works; 14 is too old for Dr.Jit, and 15 fails on some kernels.
+# Debian 12 has several versions of libLLVM. Version 14 is too old for Dr.Jit, and 15 fails on some kernels.
 LLVM = "libLLVM.so.19*"
 
 

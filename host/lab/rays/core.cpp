@@ -1,6 +1,5 @@
 // Clocks, lines and bytes per ray of the simulated ray core, by kind of ray or for all rays of an
-// image, and by memory. Each ray's result is compared with the cpu engine's; a difference ends the
-// run.
+// image, and by memory. A result that differs from the cpu engine's ends the run.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>

@@ -81,7 +81,7 @@ RTCRayHit shoot(RTCScene scene, const Ray& ray, Collector* collector = nullptr) 
 }
 
 /// Returns whether a ray and the triangles are within Embree's range (FLT_LARGE in its sources).
-/// Embree aborts for rays beyond it and skips such triangles.
+/// Beyond this range, Embree aborts for rays and skips triangles.
 bool accepts(const Shot& shot, const glm::dvec3& direction) {
   const auto is_small = [](const glm::dvec3& v) { return largest(v) < 1.8e18; };
   return is_usable(direction) && is_small(shot.origin) &&
@@ -90,7 +90,7 @@ bool accepts(const Shot& shot, const glm::dvec3& direction) {
          });
 }
 
-/// Collects every hit of a ray in a filter function that rejects it. Tests the traversal, too.
+/// Collects all hits of a ray by a filter function that rejects each hit. Tests traversal, too.
 class EmbreeSubject : public Subject {
  public:
   explicit EmbreeSubject(int flags)

@@ -126,8 +126,8 @@ void set_no_hit(Hits& hits) {
   std::memset(&hits.instID, 0xFF, sizeof hits.instID);
 }
 
-/// Traces rays one by one or in packets, by rtcIntersect1, rtcIntersect8 and the like; packets with
-/// the coherent flag for a common origin. `Queries` calls Embree: set_coherent(), intersect() and
+/// Traces rays one by one or in packets, by rtcIntersect1, rtcIntersect8 and the like. Packets with
+/// a common origin have the coherent flag. `Queries` calls Embree: set_coherent(), intersect() and
 /// occluded() for one ray, 8 or 16.
 template <std::size_t kWidth, class Queries>
 class RayPackets : public Peer {
@@ -215,8 +215,7 @@ class RayStreams : public RayPackets<1, Queries> {
   static constexpr std::size_t kStream = 1024;
 };
 
-/// Returns peers for single rays, packets and, if `Queries` supports them, streams, each in default
-/// and robust mode.
+/// Returns peers for single rays, packets and, if `Queries` has them, streams, in both modes.
 template <class Queries>
 std::vector<std::unique_ptr<Peer>> make_embree_peers(const std::string& name,
                                                      const EmbreeFunctions& embree,

@@ -1,6 +1,5 @@
 // Rays per second of the `cpu` engine and of Embree, on one thread, as medians of processor time.
-// The peers take turns, so that changes in the machine's speed affect them alike. Compare only rows
-// of the same run.
+// The peers take turns: changes in the machine's speed affect all. Compare only rows of one run.
 #include "host/lab/rays/rays.h"
 
 #include <CLI/CLI.hpp>

@@ -35,11 +35,11 @@ struct RaySet {
   }
 };
 
-/// Returns the rays of an image of size x size pixels that shows the whole scene: `camera`;
-/// `light`, occlusion rays from a point light above and to the right of the eye to just before the
-/// camera's hits; and `scattered`, from the hits in random directions of diffuse reflection. Camera
-/// rays are ordered as in the renderer: in tiles of 128 x 128 pixels, squares of 8 x 8, and blocks
-/// of 4 x 2. The other rays have the same order.
+/// Returns three sets of rays for an image of size x size pixels that shows the whole scene. Set
+/// `camera` has camera rays, `light` occlusion rays from a point light, above and to the right of
+/// the eye, to just before the camera's hits. `scattered` rays leave these hits in random
+/// directions of diffuse reflection. Camera rays are ordered as in the renderer: in tiles of 128 x
+/// 128 pixels, squares of 8 x 8, and blocks of 4 x 2. The other rays have the same order.
 [[nodiscard]] std::vector<RaySet> ray_sets(const Scene& scene, int size);
 
 /// Hits, one per ray.

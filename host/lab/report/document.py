@@ -23,7 +23,7 @@ def number(value: object, form: str, dash: str = "-") -> str:
 
 
 def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, comma: str) -> tuple[list[str], list[list[str]]]:
-    """Returns heads, and the cells of each row. `dash` replaces missing values; `comma` separates thousands.
+    """Returns the heads of the columns, and the cells of each row. `dash` replaces missing values; `comma` separates thousands.
 
     Expressions can use the row's values, `row`, and all names of templates.
     """
@@ -72,8 +72,7 @@ ENVIRONMENT.globals |= {"table": table, "each": each, "rate": rate, "scene_name"
 
 
 def wrap(page: str) -> str:
-    """Returns a Markdown page whose paragraphs and items have lines of at most 120 characters, without repeated empty
-    lines."""
+    """Returns a Markdown page whose paragraphs and items have lines of at most 120 characters, without repeated empty lines."""
     def filled(paragraph: re.Match) -> str:
         text = paragraph[0]
         return textwrap.fill(" ".join(text.split()), 120, subsequent_indent="  " if text.startswith("* ") else "",

@@ -92,10 +92,11 @@ struct Truth {
 };
 
 /// Computes the results by definition: all coordinates are integer multiples of a power of two, so
-/// the determinants are integers. With A, B, C the vertices minus the origin, a ray hits if D = A .
-/// (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have D's sign. If one of these is 0,
-/// its sign is that of the first non-zero component of the cross product, as for a direction tilted
-/// by (e, e^2, e^3). A direction that is zero or not finite hits nothing.
+/// the determinants are integers. With A, B, C the vertices minus the origin, a ray of direction I
+/// hits if D = A . (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have D's sign. If
+/// such a product with I is 0, its sign is that of the first non-zero component of the cross
+/// product, as if I were tilted by (e, e^2, e^3) with a tiny e > 0. Zero, infinite and NaN
+/// directions hit nothing.
 [[nodiscard]] Truth find_truth(const Shot& shot);
 
 /// Position of a mesh made around the origin at size 1: p becomes p * scale + shift, rounded.
@@ -123,7 +124,7 @@ struct Suite {
   std::string what;  ///< one line for the report
   /// Makes a generator with its own state.
   std::function<Generator()> make;
-  bool binary64 = false;  ///< vertices are binary64; rays, in half of the shots
+  bool binary64 = false;  ///< vertices are binary64; in half of the shots, rays, too
 };
 
 /// Returns all suites, in the order of the report.

@@ -22,13 +22,13 @@ namespace {
 struct Way {
   bool one_origin =
       false;          ///< shot by shot, as rays of a common origin; otherwise several shots at once
-  bool exact = true;  ///< its intervals contain t
+  bool exact = true;  ///< intervals and errors are checked
   bool delivers = false;          ///< hits that the host delivers are checked, too
   const Variant* unit = nullptr;  ///< the variant whose t is checked; null: none
 };
 
-/// Tests an Intersector, which finds only nearest hits: each triangle alone, in a separate BVH,
-/// and, for the nearest hit, all triangles in one BVH.
+/// Tests an Intersector, which finds only nearest hits. So each triangle is tested alone, in a
+/// separate BVH, and the nearest hit with all triangles in one BVH.
 class IntersectorSubject : public Subject {
  public:
   IntersectorSubject(IntersectorOf make, const Way& way) : make_(std::move(make)), way_(way) {}
@@ -80,7 +80,7 @@ class IntersectorSubject : public Subject {
         answers.tests[first_test + ray * triangles.size() + i] = answer(ray, triangles[i]);
       }
     }
-    // Contradictory results get an invalid triangle index, so that the answer counts as wrong.
+    // Contradictory results get an invalid triangle index, which counts as wrong.
     for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
       if (torn_[ray]) answers.nearest[first_ray + ray] = triangles.size();
     }
@@ -96,8 +96,8 @@ class IntersectorSubject : public Subject {
     for (const Corners& triangle : *mesh) trees_.emplace_back(Mesh{triangle}, make_);
   }
 
-  /// Finds the hits of all rays. Rays with one origin are traced again: repeated up to kCone rays,
-  /// and alone after a doubt. Results must not depend on other rays, groups or lanes.
+  /// Finds the hits of all rays. Rays with a common origin are traced again, with copies to fill a
+  /// cone, and alone after a doubt. Results must not depend on other rays, groups or lanes.
   void search(Tree& tree) {
     hits_.assign(rays_.size(), {});
     work_.assign(rays_.size(), {});
@@ -153,7 +153,7 @@ class IntersectorSubject : public Subject {
   std::vector<bool> torn_;
 };
 
-/// Completes a kind of subject; each has its own engine, whose BVHs share one unit.
+/// Completes `kind`. Each subject has its own engine. The BVHs of an engine share one unit.
 SubjectKind with(SubjectKind kind, const std::function<IntersectorOf()>& engine, const Way& way) {
   kind.make = [=] { return std::make_unique<IntersectorSubject>(engine(), way); };
   kind.engine = engine;

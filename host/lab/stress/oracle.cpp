@@ -7,7 +7,7 @@
 namespace raygate::lab {
 namespace {
 
-/// A vector of integers, in units of 2^-149: every coordinate is a multiple of that.
+/// A vector of integers, in units of 2^-149. Every coordinate is a multiple of this unit.
 struct Vector {
   mpz_class x, y, z;
 };

@@ -18,9 +18,8 @@ std::uint64_t digest(std::string_view bytes) {
   return result;
 }
 
-/// Returns the number of rays that, by the oracle, cross the mesh an even number of times though
-/// they start inside it. Then the generator's claim or the rule for origins of reflected rays is
-/// wrong.
+/// Returns the number of rays that claim to start inside a mesh but, by the oracle, cross it an
+/// even number of times. Either the generator or RaySpawner, for reflected rays, is wrong.
 std::uint64_t broken_claims(const Shot& shot, const Truth& truth) {
   return !shot.inside ? 0
                       : static_cast<std::uint64_t>(std::ranges::count_if(

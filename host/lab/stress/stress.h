@@ -44,8 +44,8 @@ struct Tally {
 void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
            const SubjectKind& subject, Tally& tally);
 
-/// Runs a suite with every subject that supports it, on at least the subject's share of `tests`,
-/// and returns a row for each. All subjects see prefixes of one sequence of cases.
+/// Runs a suite with every subject that supports the suite, on at least the subject's share of
+/// `tests`. Returns a row for each subject. All subjects see prefixes of one sequence of cases.
 [[nodiscard]] std::vector<Row> run(const Suite& suite, std::vector<SubjectKind> subjects,
                                    std::uint64_t tests, std::uint64_t seed);
 

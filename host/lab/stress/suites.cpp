@@ -248,14 +248,14 @@ Shot stack_shot(Random& random) {
   return aimed(shot_at(std::move(triangles), glm::dvec3(0.0), random), random);
 }
 
-/// Makes rays (almost) parallel to axes, from points in planes of faces, which must not be culled.
+/// Makes rays (almost) parallel to axes, from points in planes of faces. BVHs must not cull these.
 Shot axis_shot(Random& random, const MeshPointer& mesh) {
   Shot shot{mesh};
   const Mesh& box = *mesh;
   const glm::dvec3 low = box[0][0], high = box[2][2];
   const int axis = random.below(3);
   const Corners& t = box[random.below(static_cast<int>(box.size()))];
-  // Each coordinate of the origin equals a vertex's, or is any.
+  // Each coordinate of the origin equals a vertex's, or is random.
   for (int k = 0; k < 3; ++k) {
     const double between = std::lerp(low[k], high[k], random.uniform(0.05, 0.95));
     shot.origin[k] = random.one_in(2) ? t[0][k] : between;
@@ -379,8 +379,8 @@ std::optional<std::uint32_t> first_hit(const Bvh& bvh, const Ray& ray) {
 }
 
 /// A generator whose shots are successive reflections: eight rays from a point in a wedge or a box.
-/// The next shot starts where one of them is reflected, at the renderer's spawn origin. All shots
-/// claim to start inside; the oracle reports where the rule for origins fails.
+/// The next shot starts where one of these rays is reflected, at the renderer's spawn origin. All
+/// shots claim to start inside, so the oracle detects wrong spawn origins.
 class Bounces {
  public:
   Shot operator()(Random& random) {
@@ -499,7 +499,7 @@ std::vector<Suite> make_suites() {
        [] { return Generator(Bounces()); }}};
   suites.insert(suites.end(), rest.begin(), rest.end());
   for (std::size_t i = 0, count = suites.size(); i < count; ++i) {
-    // Unusable rays, and the renderer's rays of "corners", are binary32.
+    // Unusable rays, and the renderer's rays of "corners", exist in binary32 only.
     if (suites[i].name == "useless" || suites[i].name == "corners") continue;
     suites.push_back({suites[i].name + " 64", suites[i].what, in_binary64(suites[i].make), true});
   }

@@ -6,32 +6,33 @@
 
 #include "host/lab/stress/stress.h"
 
-// The unit's t and P
+// Error bounds of the unit's t = d / (I . n) and P = (d I) / (I . n) in binary32
 //
-// Let u = 2^-24, N and D the exact normal and plane distance, n and d the record's floats, V the
-// float result of I . n. |.| of a vector is its length, |.|_1 the sum of its magnitudes.
+// These bounds of the relative errors of t and of each coordinate of P depend on the sine of the
+// angle between ray and plane. u = 2^-24 is the unit roundoff. N and D are the exact normal and
+// plane distance, n and d the record's floats, I the direction (floats, so exact), V the float
+// result of I . n. |.| is a vector's length, |.|_1 the sum of its magnitudes.
 //
 // 1. Words. triangle_normal guarantees a double within 2^-34 |N|_1 of each component, to first
-//    order, and |N|_1 <= sqrt(3) |N|; then each is rounded to float, with a relative error u. (A
-//    word that becomes subnormal adds 2^-150, which is negligible next to a largest one of at least
-//    2^-60.)
+//    order, and |N|_1 <= sqrt(3) |N|. Each is then rounded to float, with a relative error u. (A
+//    subnormal word adds 2^-150, which is negligible: the largest word is at least 2^-60.) So
 //      |I . n - I . N| <= u sum |I_k N_k| (1 + 2^-9) + 2^-34 sqrt(3) |N| |I|_1
-//    By Cauchy and Schwarz, sum |I_k N_k| <= |I| |N|, and |I|_1 <= sqrt(3) |I|:
+//    With sum |I_k N_k| <= |I| |N| (Cauchy and Schwarz) and |I|_1 <= sqrt(3) |I|, this is
 //      <= (1 + 2^-9 + 3 * 2^-10) u |I| |N|.
 //    plane_distance is within 2^-32 |D| of D, and is rounded once: |d - D| <= (1 + 2^-7) u |D|.
 // 2. The dot product. Each product takes part in at most three roundings:
 //      |V - I . n| <= 3.00001 u sum |I_k n_k| <= (3 + 2^-9) u |I| |N|.
-// 3. |I . N| = sine |I| |N|. So the relative error of V is at most r = (4 + 2^-6) u / sine.
-// 4. The division rounds once, and so does the product d I_k that precedes it in P. I is a float
-//    and exact.
+// 3. |I . N| = sine |I| |N|. So by 1 and 2, V's relative error is at most r = (4 + 2^-6) u / sine.
+// 4. The division rounds once. In P, the product d I_k is rounded, too. So the bounds are
+//      (1 + (1 + 2^-7) u) (1 + u)^k / (1 - r) - 1, with k = 1 for t and k = 2 for P.
 
 namespace raygate::lab {
 namespace {
 
 constexpr std::size_t kFailures = 5;
 
-/// Largest error, in ulps and at any angle, of hits that the host delivers. These are computed from
-/// the corners (precise_hit in host/exact/exact.h).
+/// Largest error, in ulps and at any angle, of hits that the host delivers. The host computes them
+/// from the corners (precise_hit in host/exact/exact.h).
 constexpr double kDeliveredUlp = 0.5 + 0x1p-10;
 
 constexpr double kU = 0x1p-24;
@@ -44,9 +45,9 @@ double bound(double sine, int roundings) {
   return factor - 1.0;
 }
 
-/// Return the largest relative errors of the unit's t = d / (I . N) and P_k = (d I_k) / (I . N) in
-/// a sure hit whose exact values are normal floats. `sine` is that of the angle between ray and
-/// plane. About (2 + 4 / sine) 2^-24 and (3 + 4 / sine) 2^-24; infinite if no bound is proven.
+/// Return the largest relative errors of the unit's t and P in a sure hit whose exact values are
+/// normal floats. `sine` is the sine of the angle between ray and plane. About (2 + 4 / sine) 2^-24
+/// and (3 + 4 / sine) 2^-24; infinite if no bound is proven.
 double bound_of_t(double sine) { return bound(sine, 1); }
 double bound_of_point(double sine) { return bound(sine, 2); }
 
@@ -62,7 +63,7 @@ bool holds(const Interval& interval, double t) {
   return interval.low <= t * (1.0 + kError) && t * (1.0 - kError) <= interval.high;
 }
 
-/// Error of `value` in ulps of `exact`, and relative to it; none if `exact` is beyond float.
+/// Error of a value in ulps of the exact value, and relative to the exact value.
 struct Off {
   double ulps, relative;
 };

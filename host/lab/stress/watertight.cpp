@@ -182,7 +182,7 @@ std::vector<Row> watertight_rows(int triangles, int seeds) {
     random.binary64_vertices = binary64;
     const Placement far{glm::dvec3(2.0), {148376.0, 1234.0, -223423.0}},
         third{glm::dvec3(1.0 / 3.0)};
-    constexpr int kMostInFan = 1024;  // in larger fans, each ray meets most of the long boxes
+    constexpr int kMostInFan = 1024;  // larger fans are slow: each ray meets most boxes
     tests.push_back(singlehit(std::min(triangles, kMostInFan), random));
     tests.push_back(from_inside("sphere", far, triangles, Targets::kAnywhere, random));
     tests.push_back(from_inside("edges", third, triangles, Targets::kEdges, random));

@@ -14,7 +14,7 @@ PICTURES = "build/bench/pictures"
 # Scenes of the variants' pictures: integrator, and samples per pixel.
 SCENES = {"cornell": ("path", 4), "paper": ("whitted", 1), "teapot": ("primary", 1)}
 ENGINES = ("scenes/cornell.obj", "scenes/paper.obj", "scenes/teapot.obj", "build/scenes/sphere.obj", "build/scenes/sphereflake.obj")
-# Units and the engines that compute them.
+# Pairs of a unit and an engine.
 WAYS = (("pipeline", "cpu"), ("pipeline", "rtl"), ("serial", "model"), ("serial", "rtl"))
 # Series of the plot: unit, and whether doubts are resolved.
 KINDS = {("pipeline", True): "pipelined unit, doubts resolved", ("pipeline", False): "pipelined unit, doubts ignored",
@@ -28,7 +28,7 @@ def variants() -> list[dict]:
 
 
 def variants_steps(given: argparse.Namespace) -> list[Step]:
-    """Returns steps that render each scene in all variants; cornell also by the hardware, to count clocks."""
+    """Returns steps that render each scene in all variants, and cornell also by the hardware, to count clocks."""
     size = ("--width", 160, "--height", 120) if given.quick else ()
     return [Step("variants", scene, ("pictures", f"scenes/{scene}.obj", f"{PICTURES}/{scene}", *size, "--integrator", integrator,
                                      "--samples", 1 if given.quick else samples, *(("--clocks",) if scene == "cornell" else ())))
@@ -36,7 +36,7 @@ def variants_steps(given: argparse.Namespace) -> list[Step]:
 
 
 def timed(table: str, scene: str, ways: list[dict], repeats: int, *words: str) -> list[dict]:
-    """Returns a row for each of `ways`, which are options by name: the median processor seconds of interleaved repeats."""
+    """Returns a row for each of `ways` (options by name) with the median processor seconds of interleaved repeats."""
     runs = [[render([ROOT / "render", scene], "--threads", "1", *words, *(word for name, value in way.items() for word in (f"--{name}", str(value))))
              for way in ways] for _ in range(repeats)]
     found = []
@@ -69,8 +69,8 @@ PARTS = {"variants": variants_steps, "engines": engines_steps, "lanes": lanes_st
 
 
 def judge_pictures(rows: list[dict]) -> list[dict]:
-    """Adds FLIP to the row of each image that is compared with another: Andersson et al., "FLIP: a difference evaluator for alternating
-    images", 2020, in the authors' implementation (PyPI flip-evaluator), at its default of 67 pixels per degree."""
+    """Adds FLIP to the row of each image that is compared with another image. FLIP is by Andersson et al., "FLIP: a difference evaluator
+    for alternating images", 2020, in the authors' implementation (PyPI flip-evaluator), at its default of 67 pixels per degree."""
     for row in of(rows, "pictures"):
         if row.get("against"):
             error_map, row["flip"] = plots.flip(*(ROOT / f"{row[key]}.png" for key in ("against", "picture")))
@@ -87,8 +87,8 @@ def finish(rows: list[dict]) -> list[dict]:
 def frames(rows: list[dict]) -> list[dict]:
     """Returns a copy of each picture's row, with columns of its variant and
 
-      clocks      per frame: tests through the unit times clocks per test in the variant's simulation or,
-                  with `clocks_modelled`, for a variant without hardware, in that of its usual unit
+      clocks      per frame: tests through the unit times clocks per test in the variant's simulation. A variant without
+                  hardware has `clocks_modelled`, and the clocks per test of binary32 or, in the paper's unit, of serial
       wrong, doubtful          tests per million
       area, period_ns, frame_ms, area_time    if synthesis has measured the unit
     """

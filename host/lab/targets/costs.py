@@ -10,7 +10,7 @@ import sys
 from host.lab.rows import ROOT
 from synth import brought, catalogue, measure as synth, tools
 
-LIBRARY = "osu035"  # as old as the paper
+LIBRARY = "osu035"  # OSU 0.35 um, a process as old as the paper
 FLOWS = ("parts", "small")  # the first available one is used
 UNITS = {"pipeline": "hit_test_pipeline", "serial": "hit_test_unit"}
 USUAL = {"ExpWidth": 8, "FracWidth": 23, "QuotientBits": 0, "RoundingMode": 0, "Arith": 0}
@@ -39,7 +39,7 @@ def _measured(folder: str, rows: dict, workers: int) -> list[dict]:
 
 
 def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
-    """Returns the results of `make synth` as rows and, with `measure`, also those of each variant's unit in its format. Reports failures
+    """Returns the results of `make synth` as rows. With `measure`, synthesises each variant's unit in its format first. Reports failures
     and missing tools on standard error."""
     file = ROOT / "build" / "synth" / "results.json"
     records = json.loads(file.read_text())["results"] if file.exists() else []
@@ -49,7 +49,7 @@ def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
             if variant["hardware"]:
                 designs[variant["brought"]][design(variant).name] = catalogue.Row("variants", design(variant), {LIBRARY: FLOWS[:1]})
         try:
-            with concurrent.futures.ProcessPoolExecutor() as pool:  # the choice of user-supplied files is per process
+            with concurrent.futures.ProcessPoolExecutor() as pool:  # user-supplied files are chosen per process
                 for made in pool.map(functools.partial(_measured, workers=-(-workers // len(designs))), *zip(*designs.items())):
                     records = made + records
         except (tools.MissingTool, tools.ToolFailed) as error:

@@ -41,8 +41,8 @@ def beside_ours(rows: list[dict]) -> list[dict]:
 
 
 def ratio(ours: dict, theirs: dict, key: str, *, with_time: bool = True) -> str:
-    """Returns raygate's error relative to the other renderer's, optionally times the ratio of times, and the standard error of this ratio
-    over seeds."""
+    """Returns raygate's error divided by the other renderer's, with the standard error of this ratio over seeds. `with_time` multiplies
+    by the ratio of times."""
     value = ours[key] / theirs[key] * (ours["median_seconds"] / theirs["median_seconds"] if with_time else 1.0)
     relative = math.hypot(ours[f"{key}_error"] / ours[key], theirs[f"{key}_error"] / theirs[key])
     return f"{value:.2f} ± {value * relative:.2f}"

@@ -12,7 +12,7 @@ SCENES = ("scenes/cornell.obj", "scenes/teapot.obj", "scenes/paper.obj",
 
 
 def rays_steps(given: argparse.Namespace) -> list[Step]:
-    """Returns a step for each scene. Embree 4 is the library in PyPI's embreex, if installed."""
+    """Returns a step for each scene. Embree 4 is the library in PyPI's package embreex, if that is installed."""
     words = ("--size", 128, "--repeats", 1) if given.quick else ()
     for library in sorted(pathlib.Path(sysconfig.get_path("platlib")).glob("embreex.libs/libembree4*"))[:1]:
         words += ("--embree4", library)

@@ -62,8 +62,8 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
 
 
 def failures(rows: list[dict]) -> list[str]:
-    """Returns wrong decisions of exact subjects, as lines of stress/test/regressions.txt, and suites that wrongly claim that rays start
-    inside a mesh."""
+    """Returns wrong decisions of exact subjects, as lines of stress/test/regressions.txt, and suites whose rays do not start inside a
+    mesh as claimed."""
     return [f"{row['subject']}, suite {row['suite']}: wrong, or beyond a proven bound" + "".join(f"\n{line}" for line in row["failures"])
             for row in of(rows, "stress") if row["exact"] and not (row["spotless"] and row["tests"])] + \
         [f"{row['by']}, {row['test']}: {row['escapes']} escapes, {row['double_hits'] or 0} double hits"

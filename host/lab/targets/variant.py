@@ -54,8 +54,8 @@ def brought_files(words: list[str]) -> dict[str, str]:
 
 
 def table(words: list[str]) -> list[dict]:
-    """Returns rows as in variants.json: binary32, binary32 in the variant's unit if that differs, and the variant of the options, which may
-    also have an `adder`."""
+    """Returns rows as in variants.json: binary32, binary32 in the variant's unit if this is not the pipeline, and the variant of the
+    options. The last may also have an `adder`."""
     files = brought_files(words)
     mine: dict = dict(read_word(word) for word in words if word.partition("=")[0] not in files)
     if files:
@@ -98,7 +98,7 @@ def variants(given: argparse.Namespace) -> list[dict]:
 
 
 def pictures(given: argparse.Namespace) -> list[Step]:
-    """Returns the step that renders and audits the scene in each variant, and renders it small by the hardware to count clocks."""
+    """Returns the step that renders and audits the scene in each variant, and renders a small picture by the hardware to count clocks."""
     scene = pathlib.Path(given.scenes or "scenes/cornell.obj")
     return [Step("pictures", str(scene), ("pictures", scene, f"{bench.PICTURES}/card-{scene.stem}", "--integrator", "whitted", "--clocks"))]
 
@@ -194,8 +194,7 @@ From [netlist]({{ run }}/netlist.v), [timing]({{ run }}/timing.txt), [log]({{ ru
 
 @tools.command("error")
 def main() -> int:
-    """Parses the options, proves user-supplied modules and prepares the build. Returns 1 if a proof is refuted, 2 for
-    invalid options."""
+    """Parses the options, proves user-supplied modules and prepares the build. Returns 1 if a proof is refuted, 2 for invalid options."""
     keep_going = "--keep-going" in sys.argv
     words = [word for word in sys.argv[1:] if word != "--keep-going"]
     brought.bring(brought_files(words))

@@ -1,5 +1,4 @@
-// Verilated hit-test units with a variant's parameters, and their comparison with the reference
-// models, bit for bit.
+// Verilated hit-test units with a variant's parameters, and their comparison with reference models.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -87,7 +86,7 @@ std::unique_ptr<BurstUnit> make_rtl_burst_unit([[maybe_unused]] const Variant& v
   return nullptr;
 }
 
-/// Returns hit_test_unit likewise, with QuotientBits. Words are rounded to the format first.
+/// Returns hit_test_unit, Verilated likewise and with QuotientBits, or null. Rounds words first.
 std::unique_ptr<PlaneUnit> make_rtl_plane_unit([[maybe_unused]] const Variant& variant) {
 #define RAYGATE_MODEL(top, ...)            \
   if (matches(variant, __VA_ARGS__))       \
@@ -169,7 +168,7 @@ class VariantBursts {
           record.bounds[k] = stepped(std::abs(u), static_cast<int>(below(3)) - 1);
         }
         break;
-      case 2: {  // near the previous distance: around the margin of 64 + 64 steps
+      case 2: {  // near the previous distance; near ties differ by up to 64 + 64 steps
         record = before;
         const int reach = 1 << below(9);
         record.d = stepped(record.d,

@@ -1,5 +1,5 @@
-// Fresnel's formulas, Snell's law and the lobes of materials against closed formulas; microfacets
-// against quadratures and the formulas of papers.
+// Compares Fresnel's formulas, Snell's law and the lobes of materials with closed formulas, and
+// microfacets with quadratures and the formulas of papers.
 #include "host/light/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -50,8 +50,8 @@ Material facets(float metallic, float roughness, float transmission = 0.0f) {
   return material;
 }
 
-/// Reflected and transmitted fraction of white light from all sides, estimated with sample() and
-/// pdf() (`sampled`) and over fixed directions, which do not depend on them (`integral`).
+/// Reflected and transmitted fraction of white light from all sides. `sampled` is an estimate with
+/// sample() and pdf(); `integral` uses fixed directions instead.
 struct Balance {
   double sampled = 0.0, integral = 0.0, chosen = 0.0, density = 0.0;
   float off_unit = 0.0f;  // largest error of a sample's squared length
@@ -116,8 +116,8 @@ TEST(Fresnel, RefractionIsSnellsLaw) {
   }
 }
 
-// Samples of all mixes of lobes have the density pdf(), whose integral is the fraction of samples
-// that count, and their mean is the integral of eval().
+// For all mixes of lobes, samples have the density pdf(). The integral of pdf() is the fraction of
+// samples that count, and the mean of the samples is the integral of eval().
 TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
   const auto check = [](const Balance& sum, double of_mean, double of_density,
                         const std::string& which) {
@@ -212,7 +212,7 @@ TEST(Ggx, FacetsAddUpToTheSurface) {
     double sum = 0.0;
     constexpr int kSteps = 20000;
     for (int i = 0; i < kSteps; ++i) {
-      // Steps in t, where tan(angle) / alpha = t / (1 - t): they suit lobes of all widths.
+      // Even steps in t, with tan(angle) / alpha = t / (1 - t), suit lobes of all widths.
       const double t = (i + 0.5) / kSteps, tangent = alpha * t / (1 - t);
       const double angle = std::atan(tangent), slope = alpha / ((1 - t) * (1 - t));
       const Triple<float> normal = at_angles(angle, 1.0);
@@ -268,8 +268,8 @@ TEST(MetallicRoughnessLobes, AreTheSameThereAndBack) {
   }
 }
 
-// KHR_materials_specular: with weight 0 facets reflect nothing; its colour is the colour of
-// reflection at normal incidence.
+// By KHR_materials_specular, facets of weight 0 reflect nothing, and the specular colour is the
+// colour of reflection at normal incidence.
 TEST(MetallicRoughnessLobes, ReflectBySpecularWeightAndColor) {
   Material material = facets(0.0f, 0.3f);
   const Triple<float> plain = seen(material, 0.0).facets.f0;
@@ -286,8 +286,8 @@ TEST(MetallicRoughnessLobes, ReflectBySpecularWeightAndColor) {
   }
 }
 
-// White furnace: surfaces that absorb nothing return all light, within 1 %: facets over a base,
-// metal, and rough glass from either side.
+// White furnace: surfaces that absorb nothing return all light, within 1 %. Tests facets over a
+// base, metal, and rough glass from either side.
 TEST(MetallicRoughnessLobes, KeepAllLight) {
   const struct {
     float metallic, transmission;
@@ -340,8 +340,8 @@ TEST(MetallicRoughnessLobes, SmoothOnesLoseNothing) {
   }
 }
 
-/// Returns equation 21 of Walter and others times the cosine: for light along `in` that leaves
-/// along `out`, on the other side of a surface with normal +z. Masking is separable (equation 34).
+/// Returns the BTDF of Walter and others (equation 21) times the cosine, for light along `in` that
+/// leaves along `out` beyond a surface with normal +z. Masking is separable (equation 34).
 double walter(const glm::dvec3& in, const glm::dvec3& out, double alpha, double eta) {
   glm::dvec3 half = -glm::normalize(in + eta * out);
   if (half.z < 0.0) half = -half;

@@ -1,4 +1,4 @@
-// An environment's pdf, samples and radiance against quadratures; pictures that it lights.
+// Compares an environment's pdf, samples and radiance with quadratures; tests pictures it lights.
 #include "host/light/environment.h"
 
 #include <gtest/gtest.h>
@@ -143,7 +143,7 @@ TEST(Environment, LightsAFloorAsItsIntegralSays) {
   }
 }
 
-// Through mirrors, on misses and as Whitted's ambient light.
+// An environment is seen through mirrors, on misses and as Whitted's ambient light.
 TEST(Environment, IsSeenByAllThatSeesTheSky) {
   EnvironmentMap map;
   map.width = map.height = 1;

@@ -104,7 +104,7 @@ TEST_P(EveryIntegrator, RaysNameTheTriangleThatTheyLeave) {
   EXPECT_LT(1'000 * unnamed, named);
 }
 
-// The baseline shades one hit at a time, other instruction sets one per lane.
+// Baseline code shades one hit at a time; other instruction sets shade one hit per lane.
 TEST_P(EveryIntegrator, VectorsChangeNoByte) {
   RenderSettings all = options(80, 60);
   all.channels.albedo = true;
@@ -118,7 +118,7 @@ TEST_P(EveryIntegrator, VectorsChangeNoByte) {
   }
 }
 
-// With the unit's P instead of the host's, positions differ, but hardly.
+// With the unit's P instead of the host's, positions hardly differ.
 TEST_P(EveryIntegrator, TheUnitsPointsAreGoodEnough) {
   RenderSettings host = options(80, 60), unit = host;
   host.channels.position = unit.channels.position = true;
@@ -160,7 +160,7 @@ TEST(ManyLights, WindowsArePartsOfTheWhole) {
   }
 }
 
-// With many lights shadow rays start at surfaces, with few at lights: the shadows are the same.
+// With many lights, shadow rays start at surfaces; with few, at lights. Shadows are the same.
 TEST(ManyLights, ShadowsAreTheSameFromEitherEnd) {
   Scene few = everything();
   Scene many = few;
@@ -181,7 +181,7 @@ TEST_P(EveryIntegrator, SeedsChangeTheNoiseAlone) {
   EXPECT_NEAR(mean_colour(b).r, mean_colour(a).r, 0.05 * mean_colour(a).r);
 }
 
-// No values in a file, and no places of lights, make a pixel infinite or NaN.
+// No value in a file and no position of a light makes a pixel infinite or NaN.
 TEST_P(EveryIntegrator, EveryPixelIsFinite) {
   for (const float extreme : {0.0f, 1e-30f, 0.001f, 1e30f}) {
     for (int model = 0; model <= 10; ++model) {
@@ -214,7 +214,7 @@ TEST(EmptyTiles, HaveNoCameraRays) {
   const Camera camera = camera_at({0.6, 0.4, 60}, {12, 12, 0}, 40.0);
   RenderSettings options = light(IntegratorKind::kWhitted, 400, 400, 1);
   RenderStats stats;
-  // Only integrators that see an environment need camera rays there.
+  // Only integrators that see an environment need camera rays in empty tiles.
   EnvironmentMap sky;
   sky.width = sky.height = 1;
   sky.texels = {glm::vec3(1.0f)};

@@ -1,4 +1,4 @@
-// Functions of several lanes give the same bits as with one lane, also for special numbers.
+// Functions give the same bits with several lanes as with one lane, also for special numbers.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -22,8 +22,7 @@ struct Case {
   alignas(64) float out[kOutputs][kLanes];
 };
 
-/// Generates numbers of every size, in [-1, 1] and [0, 1], and special ones: zeros, subnormals,
-/// infinities and NaN.
+/// Generates numbers of every size, in [-1, 1] and [0, 1], zeros, subnormals, infinities and NaN.
 class Inputs {
  public:
   void fill(Case& c) {

@@ -1,5 +1,5 @@
-// Lights are chosen as often as their probabilities say; the outer sides of closed lights; the
-// default lights of scenes without lights.
+// Tests that lights are chosen as often as their probabilities say, the outer sides of closed
+// lights, and the default lights of scenes without lights.
 #include "host/light/lights.h"
 
 #include <gtest/gtest.h>
@@ -98,7 +98,7 @@ TEST_P(ManyLights, AreListedWithoutAChoice) {
   EXPECT_EQ(all.ambient(), chosen.ambient());
 }
 
-// Checks surface points everywhere, also among the lights.
+// Surface points are everywhere, also among the lights.
 TEST_P(ManyLights, ChancesAreOneInAllAndNoLightThatBringsLightHasNone) {
   const Bvh bvh(scene_);
   const Lights lights(scene_, bvh);
@@ -119,7 +119,7 @@ TEST_P(ManyLights, ChancesAreOneInAllAndNoLightThatBringsLightHasNone) {
     all += sum;
   }
   EXPECT_GT(bringing, 50);
-  // Below 1 where a cluster seems to contribute but none of its sources does, mostly spots.
+  // Below 1 where a cluster (mostly of spots) seems to contribute but none of its sources does.
   EXPECT_GT(all / 100, 0.7);
 }
 
@@ -253,7 +253,7 @@ TEST(DefaultLights, StayInTheRangeOfTreesAndPredicates) {
   }
 }
 
-// White surfaces that face the camera are not clipped; with paths, hardly any are.
+// White surfaces that face the camera are not clipped by Whitted, and hardly by paths.
 TEST(DefaultLights, LeaveWhiteBelowOne) {
   Scene scene;
   add(scene, test::sphere(4), matte(glm::vec3(1.0f)));
@@ -291,7 +291,7 @@ TEST(PreviewLights, AreTwoLightsAndTheBackground) {
   EXPECT_GT(lights->points[0].intensity.x, lights->points[1].intensity.x);
 }
 
-// Under a roof's edge, a floor is lit by the visible part of a sphere's disc: a circular segment.
+// A roof hides a part of a spherical light's disc. A circular segment of the disc stays visible.
 TEST(DefaultLights, CastSoftShadows) {
   const Scene wall = square(matte(glm::vec3(0.5f)));
   EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
@@ -320,8 +320,7 @@ TEST(DefaultLights, CastSoftShadows) {
   }
 }
 
-// Default lights replace small emitters in previews only; a faint emissive picture does not count
-// as a light, a bright one does.
+// Default lights replace small emitters in previews only, and faint emissive pictures always.
 TEST(DefaultLights, AreThoseOfScenesThatNothingLights) {
   const auto expect = [](const Scene& scene, bool by_default, bool in_preview, const char* what) {
     EXPECT_EQ(default_lights(scene, camera_from({0, 0, 5})).has_value(), by_default) << what;

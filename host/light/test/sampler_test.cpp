@@ -56,7 +56,7 @@ TEST(Sampler, KeysDependOnSeedAndPixel) {
   EXPECT_NE(pixel_key(1, 2, 3), pixel_key(1, 3, 2));
 }
 
-// Each filter's variance, from its formula: integrals of x^2 w(x) over those of w(x).
+// A filter's variance by its formula is the integral of x^2 w(x) over the integral of w(x).
 TEST(ReconstructionFilter, OffsetsHaveTheFiltersSpread) {
   const auto variance_of = [](auto weight, double radius) {
     double sum = 0.0, squares = 0.0;

@@ -1,4 +1,4 @@
-// Shadow rays against exact arithmetic on every triangle.
+// Compares shadow rays with exact arithmetic on every triangle.
 #include "host/light/shadow_rays.h"
 
 #include <gtest/gtest.h>
@@ -116,7 +116,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   EXPECT_GT(dark, 1000);
   EXPECT_GT(lit, 1000);
   // Rays from the light and from the surface are rounded differently. Where an edge is less than a
-  // float step from them, either answer is right.
+  // float step from the rays, either answer is right.
   EXPECT_LE(different, 2);
   std::cout << dark << " dark, " << lit << " lit, " << different << " different\n";
 }

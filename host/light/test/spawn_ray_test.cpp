@@ -1,5 +1,5 @@
-// Rays reflected inside closed meshes stay inside, even in the sharpest corners; clearances against
-// distances found by brute force.
+// Rays reflected inside closed meshes stay inside, even in the sharpest corners. Clearances agree
+// with distances found by brute force.
 #include "host/light/spawn_ray.h"
 
 #include <gtest/gtest.h>
@@ -120,7 +120,7 @@ TEST(RaySpawner, NoBounceLeavesAClosedMesh) {
   expect(test::sphere(1), glm::vec3(0.1f, 0.2f, 0.3f));
 }
 
-// Rays into edges with angles from 1 to 1e-6 rad: origins move back, or the ray ends.
+// Rays run into edges with angles from 1 to 1e-6 rad. Origins move back, or the ray ends.
 TEST(RaySpawner, NoBounceLeavesASharpCorner) {
   Random random;
   for (const float angle : {1.0f, 0.1f, 1e-2f, 1e-4f, 1e-6f}) {
@@ -138,8 +138,8 @@ TEST(RaySpawner, NoBounceLeavesASharpCorner) {
   }
 }
 
-// Rays from outside onto a sphere's edges, so flat that the planes of both triangles are less than
-// a float step apart: no ray ends, and both origins are on their sides of the surface.
+// Rays from outside meet edges of a sphere that are so flat that the planes of both triangles are
+// less than a float step apart. No ray ends, and both origins are on their sides of the surface.
 TEST(RaySpawner, NoRayEndsOnARidge) {
   Random random;
   const std::vector<Corners> mesh = test::sphere(4);

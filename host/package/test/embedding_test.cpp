@@ -21,8 +21,7 @@
 
 namespace {
 
-// The number of live allocations of this program, and the number of allocations until one fails
-// (below 0: none fails).
+// The number of live allocations, and the number of allocations until one fails (negative: never).
 std::atomic<std::int64_t> alive = 0, left = -1;
 
 void* allocate(std::size_t size, std::size_t alignment) {
@@ -146,7 +145,7 @@ TEST(Embedding, RefusesUnknownVectors) {
     EXPECT_THROW((void)nearest(Tracer(all.triangles), all.rays), std::runtime_error);
     return;
   }
-  EXPECT_TRUE(in_child([] {  // this test again, in a process that has not read the variable yet
+  EXPECT_TRUE(in_child([] {  // repeats this test in a process that has not read the variable yet
     ::setenv("RAYGATE_VECTORS", "foo", 1);
     ::execl("/proc/self/exe", "embedding_test", "--gtest_filter=Embedding.RefusesUnknownVectors",
             "--gtest_brief=1", nullptr);

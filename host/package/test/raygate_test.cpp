@@ -120,8 +120,8 @@ std::vector<double> answers(std::span<const Tracer::Triangle> triangles,
   return said;
 }
 
-// A thread's state of arithmetic, which other libraries may change, changes no result, and is
-// restored afterwards.
+// Other libraries may change a thread's floating-point state. Tracer's results do not depend on
+// this state, and queries restore it.
 TEST(Tracer, AnswersInAnyStateOfTheThread) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> any(-1.0f, 1.0f);
@@ -187,8 +187,7 @@ TEST(Tracer, RoundsWhatUnderflowsAndNothingElse) {
     EXPECT_NE(truth(above), truth(0.0f));
     EXPECT_EQ(triangle_at(above), truth(above)) << exponent;
     EXPECT_EQ(triangle_at(along), truth(along)) << exponent;
-    // If it is not subnormal, the float below is half of 2^-149 away after scaling, and rounded to
-    // even: up.
+    // If exponent > 0, `below` is 2^-126 - 2^-150 after scaling: a tie, which is rounded up.
     const float below = std::nextafter(along, 0.0f);
     EXPECT_EQ(triangle_at(below), truth(exponent > 0 ? along : below)) << exponent;
     const float end = std::ldexp(1.0f, -exponent);  // t of the hit

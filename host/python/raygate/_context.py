@@ -11,9 +11,9 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 def in_context(function: _Function) -> _Function:
-    """Returns `function`, which rounds to nearest, with subnormals and without traps, on the calling thread and on
-    threads that it starts. It restores the state of the calling thread. It runs Python's signal handlers several
-    times per 100 ms; their exceptions, such as KeyboardInterrupt, end the call."""
+    """Returns `function` with IEEE 754 arithmetic: it rounds to nearest, with subnormals and without traps, also on threads that it
+    starts. After a call, the calling thread's state is restored. During a call, Python's signal handlers run several times per 100 ms.
+    Their exceptions, such as KeyboardInterrupt, end the call."""
     @functools.wraps(function)
     def guarded(*arguments: Any, **keywords: Any) -> Any:
         return _raygate.call_in_context(function, *arguments, **keywords)

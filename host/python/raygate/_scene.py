@@ -23,7 +23,7 @@ RenderOptions = TypedDict("RenderOptions", {"spp": int, "error": float, "depth":
     "integrator": Literal["primary", "whitted", "path"], "filter": Literal["box", "blackman-harris"], "caustics": Literal["auto", "off"],
     "threshold": float, "ambient": float}, total=False)
 
-_DIRECTION = np.array([0.36, 0.48, 0.8], np.float32)  # of rays that count crossings; arbitrary
+_DIRECTION = np.array([0.36, 0.48, 0.8], np.float32)  # of the rays that count crossings; an arbitrary choice
 
 
 class Picture(dict[str, Array]):
@@ -57,7 +57,7 @@ class Picture(dict[str, Array]):
 
 
 class Scene(_raygate.Scene):
-    """Triangles, materials and lights. A pickle holds the absolute name of the file, or the arrays, and the options to build it again."""
+    """Triangles, materials and lights. A pickle holds the absolute name of the file, or the arrays, and the options to rebuild it."""
 
     @overload
     def __init__(self, file: Path, /, *, smooth: float | None = None, degenerate: Degenerate = "leave out",
@@ -70,13 +70,13 @@ class Scene(_raygate.Scene):
     @in_context
     def __init__(self, file_or_vertices: Any, /, faces: npt.ArrayLike | None = None, *, smooth: float | None = None,
                  degenerate: Degenerate = "leave out", threads: int | None = None) -> None:
-        """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Unlike ./render, a.obj does not read a.json beside it. Or
-        takes vertices, shape (N, 3), float32 or float64, and faces, shape (M, 3), whole numbers: the vertices, from 0, of each.
+        """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Unlike ./render, a.obj does not read a.json beside it. Or takes
+        vertices, shape (N, 3), float32 or float64, and faces, shape (M, 3): whole numbers of each face's vertices, from 0.
 
-        Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them; `degenerate_faces`
-        lists them. A scene needs a face with an area; degenerate="refuse" raises InputError for any without. `smooth`: faces
-        without normals that meet at up to this angle, 0 to 180 degrees, are shaded smoothly. `threads`: 1 to 1024, one per
-        processor by default. Raises InputError, which names the file and line, the vertex or the face that cannot be used."""
+        Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them; `degenerate_faces` lists
+        them. A scene needs a face with an area; degenerate="refuse" raises InputError for any face without area. `smooth`: faces without
+        normals that meet at up to this angle, 0 to 180 degrees, are shaded smoothly. `threads`: 1 to 1024, one per processor by default.
+        Raises InputError that names the file and line, the vertex or the face that cannot be used."""
         options = {"smooth": smooth, "degenerate": degenerate, "threads": threads}
         if faces is None and isinstance(file_or_vertices, (str, bytes, os.PathLike)):
             name = os.fsencode(file_or_vertices)
@@ -117,11 +117,11 @@ class Scene(_raygate.Scene):
               threads: int | None = None) -> Array:
         """Returns the hits of rays: a structured array with a field, int64 or float64, for each answer.
 
-        origins, directions: shape (N, 3), or one vector for all rays, of shape (3,) or (1, 3); float64 in C order is read
-        without a copy. Hits are at origin + t direction with 0 < t < limit, exactly, in float64. A direction may have any
-        length; (0, 0, 0) hits nothing. limits: shape (N,), or one number for all rays; none by default. threads: 1 to 1024,
-        one per processor by default. hits: "nearest", a row for each ray; "any", a row for each ray that says whether it hits
-        anything, sooner; "all", a row for each hit of each ray, near before far, at equal t the lower triangle first.
+        origins, directions: shape (N, 3), or one vector for all rays, of shape (3,) or (1, 3); float64 in C order is read without a copy.
+        Hits are at origin + t direction with 0 < t < limit, exactly, in float64. A direction may have any length; (0, 0, 0) hits nothing.
+        limits: shape (N,), or one number for all rays; none by default. threads: 1 to 1024, one per processor by default. hits:
+        "nearest", a row for each ray; "any", a row for each ray that says whether it hits anything (faster); "all", a row for each hit of
+        each ray, near before far, at equal t the lower triangle first.
 
         columns: one name or several; by default all but material and side. "any" has only ray, hit and doubts, by default ray
         and hit. ray, triangle, object, material: numbers from 0. hit: 1 or 0. t: relative error at most 2^-33. point (fields x,
@@ -149,25 +149,23 @@ class Scene(_raygate.Scene):
                target: npt.ArrayLike | None = None, up: npt.ArrayLike | None = None, **options: Unpack[RenderOptions]) -> Picture:
         """Returns a Picture: a dictionary of arrays of `height` rows (480), the top one first, and `width` columns (640), pixels.
 
-        "color", shape (height, width, 4): scene-linear R, G, B, A, premultiplied. "normal", "point", "albedo", shape
-        (height, width, 3); "depth", shape (height, width): float32. "triangle" and "object", shape (height, width):
-        uint32, 4294967295 where nothing is hit. eye, target, up: three numbers each, in the file's coordinates; the
-        camera of the scene file by default, or one that sees the whole scene. Other keywords are these options of
-        ./render, with its defaults: spp, error, integrator, fov (degrees), depth, seed, filter, caustics, threshold,
-        ambient, threads. Raises InputError, which names the option, for values that cannot be used."""
+        "color", shape (height, width, 4): scene-linear R, G, B, A, premultiplied. "normal", "point", "albedo", shape (height, width, 3);
+        "depth", shape (height, width): float32. "triangle" and "object", shape (height, width): uint32, 4294967295 where nothing is hit.
+        eye, target, up: three numbers each, in the file's coordinates; the camera of the scene file by default, or one that sees the
+        whole scene. Other keywords are these options of ./render, with its defaults: spp, error, integrator, fov (degrees), depth, seed,
+        filter, caustics, threshold, ambient, threads. Raises InputError, which names the option, for values that cannot be used."""
         channels, film = self._render(_arrays.point("eye", eye), _arrays.point("target", target), _arrays.point("up", up),
                                       _settings(width=width, height=height, **options))
         return Picture(channels, film)
 
     @in_context
     def inside(self, points: npt.ArrayLike, *, threads: int | None = None) -> npt.NDArray[np.bool_]:
-        """Returns whether points, of shape (N, 3), or (3,) for one, are inside of closed surfaces: an array of bool, (N,).
-        threads: as for trace().
+        """Returns whether points, of shape (N, 3), or (3,) for one, are inside closed surfaces: bool, (N,). threads: as for trace().
 
-        A point is inside if a ray from it crosses surfaces an odd number of times, counted exactly, for points as trace() rounds
-        origins. So the orientation of faces does not matter, a shell within another one is a cavity, and what two solids share
-        is outside; of faces oriented alike, winding_number(points)[0] != 0 is the union. Answers have no meaning for an open
-        surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
+        A point is inside if a ray from it crosses surfaces an odd number of times. The count is exact for the points as rounded by
+        trace(). So the orientation of faces does not matter, a shell within another one is a cavity, and the intersection of two solids
+        is outside. If faces are oriented alike, winding_number(points)[0] != 0 is the union of solids. Answers have no meaning for an
+        open surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns="ray", threads=threads)
         return np.asarray(np.bincount(hits["ray"], minlength=len(points)) % 2, np.bool_)
@@ -175,10 +173,10 @@ class Scene(_raygate.Scene):
     @in_context
     def winding_number(self, points: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Returns how often the surfaces wind around points, of shape (N, 3) or (3,), and bounds of the errors: two arrays of float64,
-        (N,). Around a closed surface of faces oriented alike, also one that crosses itself, the number is whole and exact: 1 inside, 0
-        outside, 2 where two solids overlap. Around an open one it is the solid angle seen from the point over 4 pi. The error is inf if
-        a point is so near a surface that rounding (see origins in trace()) may move it across. The numbers have no meaning for a
-        point on a surface. Raises InputError as inside() does."""
+        (N,). For a closed surface of faces oriented alike, even if it crosses itself, the number is whole and exact: 1 inside, 0 outside,
+        2 where two solids overlap. For an open surface, the number is the surface's solid angle seen from the point over 4 pi. The error
+        is inf if a point is so near a surface that rounding (see origins in trace()) may move the point across. The numbers have no
+        meaning for a point on a surface. Raises InputError as inside() does."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
         crossings: Array = np.bincount(hits["ray"], hits["side"], minlength=len(points))
@@ -190,9 +188,9 @@ class Scene(_raygate.Scene):
         """Returns the nearest point of the surface to each point: a structured array of N rows with the fields triangle,
         int64, and distance, x, y and z, float64, in the scene's unit of length. points: shape (N, 3), or (3,) for one.
 
-        Distances are computed in float64 and compared as computed: of equal ones the lowest triangle is returned. Errors are
-        absolute, those of rounding coordinates relative to the scene's middle, so small distances have few digits. Raises
-        InputError, which names the point, for inf, NaN and coordinates beyond 2^1000."""
+        Distances are computed in float64; of equal distances, the lowest triangle is returned. Coordinates are rounded relative to the
+        scene's middle, so errors are absolute, and small distances have few digits. Raises InputError, which names the point, for inf,
+        NaN and coordinates beyond 2^1000."""
         points = _arrays.points(points, 1000)
         fields = [("triangle", "<i8"), *((name, "<f8") for name in ("distance", "x", "y", "z"))]
         return self._closest(points).view(np.dtype(fields))

@@ -94,9 +94,9 @@ class Result(NamedTuple):
 @in_context
 def fp_add(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
            tininess: Tininess = "after") -> Result:
-    """Returns a + b. `rounding`: one of ROUNDINGS. `tininess`: whether the size of a result is judged "before" or
-    "after" rounding; it affects the flag UNDERFLOW alone. Raises InputError for operands that are no numbers of the
-    format, and for shapes that cannot be broadcast."""
+    """Returns a + b. `rounding`: one of ROUNDINGS. `tininess`: whether the size of a result is judged "before" or "after" rounding; it
+    affects the flag UNDERFLOW alone. Raises InputError for operands that are not numbers of the format and shapes that do not
+    broadcast."""
     return _run("+", a, b, format, rounding, tininess)
 
 
@@ -131,8 +131,8 @@ def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: F
 
 @in_context
 def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even", tininess: Tininess = "after") -> Result:
-    """Returns numbers rounded to the format, as floats of their own type, or as float64 if that cannot hold the format, and
-    the flags of the rounding. Arguments: see fp_add."""
+    """Returns numbers rounded to the format, as floats of their own type, or as float64 if this type cannot hold the format, and the
+    flags of the rounding. Arguments: see fp_add."""
     x = _numbers(x)
     bits, flags = encode(x, format, rounding, tininess)
     return Result(_held(decode(bits, format), x.dtype, format), flags)
@@ -149,7 +149,7 @@ def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "ne
 
 @in_context
 def decode(bits: npt.ArrayLike, format: Format) -> Any:
-    """Returns the values, float64, of words of the format. Raises InputError unless these are unsigned integers that fit."""
+    """Returns the values, float64, of words of the format. Raises InputError unless the words are unsigned integers that fit."""
     bits = _words(_arrays.plain("bits", bits), format)
     highest = (1 << format.exponent_bits) - 1
     field = bits >> format.fraction_bits & highest

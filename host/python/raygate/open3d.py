@@ -4,9 +4,9 @@
     scene.add_triangles(vertices, triangles)       # or a mesh of Open3D
     scene.cast_rays([[0, 0, 5, 0, 0, -1]])["t_hit"]
 
-Open3D need not be installed. Arguments and answers are NumPy arrays, or what NumPy makes an array of, instead of tensors. Where
-answers differ from Open3D's: positions, rays, distances and points are float64; a ray through an edge or a vertex of a closed mesh
-hits it once, so that counts of intersections are right and one sample tells inside from outside. Invalid arguments raise InputError.
+Open3D need not be installed. Arguments and answers are NumPy arrays, or what NumPy makes an array of, instead of tensors. Differences
+from Open3D: positions, rays, distances and points are float64. A ray through an edge or a vertex of a closed mesh hits it once, so counts
+of intersections are right, and one sample tells inside from outside. Invalid arguments raise InputError.
 """
 
 from __future__ import annotations
@@ -87,15 +87,15 @@ class RaycastingScene:
         return {name: np.where(is_hit, number, self.INVALID_ID).astype(np.uint32).reshape(shape) for name, number in numbers.items()}
 
     def _normals(self, triangles: Array) -> Array:
-        """Returns unit normals; 0 for -1."""
+        """Returns unit normals of triangles by number; 0 for the number -1."""
         a, b, c = np.moveaxis(self._corners[np.maximum(triangles, 0)], 1, 0)
         normals = np.cross(b - a, c - a)
         normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
         return normals * (triangles >= 0)[:, None]
 
     def cast_rays(self, rays: Any, nthreads: int = 0) -> dict[str, Array]:
-        """Returns the nearest hit of each ray: "t_hit" (infinite: none), "geometry_ids" and "primitive_ids" (INVALID_ID:
-        none), "primitive_uvs" (0: none) and "primitive_normals" (0: none)."""
+        """Returns the nearest hit of each ray: "t_hit" (infinity: none), "geometry_ids" and "primitive_ids" (INVALID_ID: none),
+        "primitive_uvs" (0: none) and "primitive_normals" (0: none)."""
         shape, hits = self._trace(rays, nthreads, "nearest", ["triangle", "t", "uv"])
         triangles = hits["triangle"]
         uvs = np.nan_to_num(np.stack([hits["u"], hits["v"]], -1))
@@ -150,8 +150,8 @@ class RaycastingScene:
         return found["distance"].reshape(shape)
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
-        """Returns 1 for points inside the surface, as Scene.inside() does, and 0 for others. `nsamples`, which must be odd as in
-        Open3D, changes nothing: one ray suffices."""
+        """Returns 1 for points inside the surface, as Scene.inside() does, and 0 for others. `nsamples` must be odd, as in Open3D, but
+        has no effect: one ray suffices."""
         if nsamples < 1 or nsamples % 2 != 1:
             raise InputError(f"nsamples: found {nsamples!r}, expected an odd number of at least 1")
         shape, points = _rows("query_points", query_points, 3)

@@ -2,10 +2,10 @@
 
     mesh.ray = raygate.trimesh.RayMeshIntersector(mesh)
 
-It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector and does not need trimesh. Where its answers differ: a ray
-through an edge or a vertex of a closed mesh hits it once, not once for each triangle there; all hits of a ray are found,
-however near each other they are; a point on the surface may count as inside or outside. mesh.copy() has trimesh's own
-intersector again, and mesh.nearest stays trimesh's: mesh.ray.scene.closest() is raygate's.
+It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector and does not need trimesh. Its answers differ in these points: a ray
+through an edge or a vertex of a closed mesh hits the mesh once, not once for each triangle there; all hits of a ray are found, however
+near each other they are; a point on the surface may count as inside or outside. mesh.copy() has trimesh's own intersector again.
+mesh.nearest stays trimesh's; mesh.ray.scene.closest() is raygate's.
 """
 
 from __future__ import annotations
@@ -42,9 +42,8 @@ class RayMeshIntersector:
 
     def intersects_id(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True,
                       max_hits: int | None = None, return_locations: bool = False) -> tuple[Array, ...]:
-        """Returns the triangles that rays hit, shape (k,), the numbers of their rays, shape (k,), and with
-        `return_locations` the points, shape (k, 3). Returns all hits of each ray, near before far, at most `max_hits`, or
-        without `multiple_hits` the nearest."""
+        """Returns the triangles that rays hit, shape (k,), the numbers of their rays, shape (k,), and with `return_locations` the points,
+        shape (k, 3). Returns all hits of each ray, near before far and at most `max_hits`; without `multiple_hits`, the nearest hit."""
         columns = ["ray", "triangle", "point"]
         hits = self.scene.trace(ray_origins, ray_directions, hits="all" if multiple_hits else "nearest", columns=columns)
         hits = hits[hits["triangle"] >= 0]

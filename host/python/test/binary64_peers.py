@@ -49,11 +49,11 @@ def grid(x, y, z, corner):
 
 
 def truth(origin, direction, corners):
-    """The faces that a ray meets, nearest first, by definition: -1 in their place where it meets an edge or a plane exactly."""
+    """Returns the faces that a ray meets, nearest first, by definition; -1 instead if the ray meets an edge or a plane exactly."""
     a, b, c = np.moveaxis(corners - origin, 1, 0)
     found = np.ones(len(corners), bool)
     d = np.einsum("ij,ij->i", a, np.cross(b, c))
-    # A . (B x C) and I . (A x B) are six terms with at most ten roundings of 2^-53 each.
+    # A . (B x C) and I . (A x B), with I the direction and A, B, C the corners, are six terms with at most ten roundings of 2^-53 each.
     size = np.abs(corners - origin).max(axis=(1, 2))
     sure_d = np.abs(d) > 2.0**-46 * size**3
     sides = [np.cross(p, q) @ direction for p, q in ((a, b), (b, c), (c, a))]

@@ -1,4 +1,4 @@
-"""The commands that `pip install .` installs beside the module: raygate-render and the others."""
+"""Tests the commands that `pip install .` installs beside the module: raygate-render and the others."""
 
 import pathlib
 import subprocess

@@ -1,4 +1,4 @@
-"""raygate.float: against the machine's own arithmetic where that knows the format."""
+"""Compares raygate.float with the machine's own arithmetic where the machine has the format."""
 
 import unittest
 import warnings
@@ -50,7 +50,7 @@ class Operations(unittest.TestCase):
         self.assertEqual(rf.fp_divide(0.0, 0.0).flags, rf.Flags.INVALID)
         self.assertEqual(rf.fp_compare(np.nan, 1.0, "==").flags, 0)
         self.assertEqual(rf.fp_compare(np.nan, 1.0, "<").flags, rf.Flags.INVALID)
-        # Rounds up to the least normal number: tiny before rounding, not after.
+        # The product rounds up to the least normal number: it is tiny before rounding, not after.
         a, b = np.uint32(0x00FFFFFE), np.uint32(0x3F000001)
         self.assertEqual(rf.fp_multiply(a, b).flags, rf.Flags.INEXACT)
         self.assertEqual(rf.fp_multiply(a, b, tininess="before").flags, rf.Flags.INEXACT | rf.Flags.UNDERFLOW)

@@ -1,4 +1,4 @@
-"""raygate.open3d: the answers that Open3D's documentation promises, on a cube and a floor."""
+"""raygate.open3d gives the answers that Open3D's documentation promises, on a cube and a floor."""
 
 import itertools
 import unittest

@@ -239,7 +239,7 @@ class Arrays(unittest.TestCase):
         winding, errors = raygate.Scene(square, faces).winding_number(points)
         true = sum(self.solid_angles(square[face] - points[:, None]) for face in faces) / (4 * np.pi)
         self.assertTrue((np.abs(winding - true) <= errors + 1e-12).all())
-        # A point that is rounded relative to the scene's origin.
+        # The first point is rounded relative to the scene's origin.
         cube = np.array(self.VERTICES, float)
         vertices = np.concatenate([cube, *(cube + [5e6 + 0.1, 6e6 + 0.1, z] for z in (0, 3, 6, 9))])
         far = raygate.Scene(vertices, np.concatenate([np.array(self.FACES) + i for i in range(0, 40, 8)]))
@@ -377,7 +377,7 @@ class Arrays(unittest.TestCase):
         finally:
             os.chdir(before)
         kept = [[scene.trace(*rays, hits="all").tobytes(), scene.render(9, 9)["color"].tobytes(), scene.rounding] for scene in scenes]
-        vertices += 1  # the caller's arrays are theirs again
+        vertices += 1  # changes the caller's arrays, not the scenes
         corners += 1
         for scene, expected in zip(scenes, kept):
             again = pickle.loads(pickle.dumps(scene))
@@ -538,7 +538,7 @@ class Embedding(unittest.TestCase):
         for far in (1e6, 1e30):
             start = time.process_time()
             found = self.scene.closest(far * directions)
-            self.assertLess(time.process_time() - start, 3)  # a look at every triangle: 6 s and more
+            self.assertLess(time.process_time() - start, 3)  # testing every triangle takes 6 s and more
             self.assertTrue((found["distance"] > 1e-3 * far).all())
 
     def seconds_until_interrupted(self, call, after=0.1):
@@ -560,7 +560,7 @@ class Embedding(unittest.TestCase):
         return time.process_time() - start
 
     def test_ctrl_c_ends_endless_calls(self):
-        # All points of the sphere are equally near its middle: each search looks at all triangles.
+        # All points of the sphere are equally near its middle, so each search tests all triangles.
         u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 300), np.linspace(0.01, 3.1, 300))
         sphere = np.stack([np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)], axis=-1)
         quads = [sphere[:-1, :-1], sphere[1:, :-1], sphere[1:, 1:]]
@@ -606,7 +606,7 @@ class Embedding(unittest.TestCase):
 
 @unittest.skipUnless(platform.machine() == "x86_64", "MXCSR is x86's")
 class StateOfTheThread(unittest.TestCase):
-    """Other modules' settings of the arithmetic change no result, and are restored afterwards."""
+    """Arithmetic settings of other modules change no result, and are restored afterwards."""
 
     TRAPS = 0x1F80  # masked where 1
     CHANGES = [(0x0800, 0x4000),  # rounding upward

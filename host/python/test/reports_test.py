@@ -1,4 +1,4 @@
-"""What public reports about other programs describe, rebuilt in small inputs, with the right answers.
+"""Cases that public reports about other programs describe, as small inputs with the right answers.
 
 A row of ROWS: the report, the files (the first is loaded), and what is expected. Adders of users are in synth/test/brought_test.py.
 """
@@ -73,7 +73,7 @@ class Gltf:
         return len(self.json["bufferViews"]) - 1
 
     def add(self, values, code="f", **members):
-        """An accessor of numbers or tuples."""
+        """Adds an accessor of numbers or tuples."""
         width = len(values[0]) if isinstance(values[0], tuple) else 1
         self.json["accessors"].append({"bufferView": self.view(values, code), "componentType": {"f": 5126, "H": 5123, "B": 5121, "b": 5120}[code],
                                        "count": len(values), "type": {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}[width], **members})
@@ -113,7 +113,7 @@ def morphed(**of_node):
 
 
 def sparse(corners, count=None, values=None, number=0):
-    """The square with a sparse accessor of these corners: one alone replaces the square's; of several, the others are 0."""
+    """Returns the square with a sparse accessor of these corners. A single one replaces the square's; with several, the others are 0."""
     gltf = Gltf(NORMAL=[(0., 0., 1.)] * 4)
     places = gltf.view([(3., 3., 0.) if k == 2 else CORNERS[k] for k in corners])
     gltf.json["accessors"][number]["sparse"] = {"count": count or len(corners), "indices": {"bufferView": gltf.view(corners, "H"), "componentType": 5123},
@@ -149,7 +149,7 @@ def material(picture=None, more=None, texture=None, sampler=None, **attributes):
 
 
 def before_blue(mode, cutoff=0.5, alpha=0.):
-    """A square of vertex alpha before a blue one."""
+    """Returns a square with vertex alpha in front of a blue square."""
     gltf = material(more={"alphaMode": mode, "alphaCutoff": cutoff}, COLOR_0=[(1., 0., 0., alpha)] * 4)
     back = {"attributes": {"POSITION": gltf.add([(3 * x, 3 * y, -1.) for x, y, _ in CORNERS])}, "indices": gltf.mesh["indices"], "material": 1}
     gltf.json["materials"].append({"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0, 0, 1, 1]}})
@@ -181,7 +181,7 @@ POINTS = "".join("%g %g %g\n" % corner for corner in CORNERS)
 
 
 def ply_with(properties, values, faces=FACES, face="4 0 1 2 3\n", comment=""):
-    """The square with further properties and values of vertices."""
+    """Returns the square with further properties and values of vertices."""
     return ply(comment + VERTICES + "".join(f"property {p}\n" for p in properties) + faces,
                "".join(f"{point} {value}\n" for point, value in zip(POINTS.splitlines(), values)) + face)
 
@@ -292,7 +292,7 @@ ROWS = [
     ("trimesh#1494, #790, #44", {"a.ply": ply(VERTICES + FACES.replace("face 1", "face 3"), POINTS + "3 0 1 1\n3 0 1 2\n3 0 2 3\n")},
      {"rays": [LOWER, UPPER], "numbers": [1, 2], "warns": [NO_AREA]}),
     ("trimesh#1494, #790, #44", {"a.obj": SQUARE + "f 1 2 2\nf 1 2 3\nf 1 3 4\n"}, {"rays": [LOWER, UPPER], "numbers": [1, 2], "warns": [NO_AREA]}),
-    # Corners that binary32 cannot hold: in the last row, rounding would move an edge by 0.2.
+    # Binary32 cannot represent these corners. In the last row, rounding would move an edge by 0.2.
     ("three-mesh-bvh#112, Open3D#5777", {"a.obj": "v 500000.125 4649776.25 0\nv 500001.125 4649776.25 0\nv 500000.125 4649777.25 0\nf 1 2 3\n"},
      {"rays": [(500000.375, 4649776.5)]}),
     ("three-mesh-bvh#112 and a stray face", {"a.obj": "v 500000 4649776.3 0\nv 500001 4649776.3 0\nv 500000 4649778.3 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n"},

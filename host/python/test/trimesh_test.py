@@ -1,7 +1,7 @@
 """raygate.trimesh, and with RAYGATE_TRIMESH=1 (`make test LONG=trimesh`) trimesh's own tests of rays with our intersector.
 
-Those tests are of trimesh's source distribution on PyPI, without their helpers and models: a few lines and meshes made here
-stand in. Left out: test_rays (needs models that the distribution lacks) and test_contains_cavity (needs manifold3d).
+trimesh's tests are from its source distribution on PyPI, without their helpers and models. A few lines and meshes made here replace
+these. Left out: test_rays (needs models that the distribution lacks) and test_contains_cavity (needs manifold3d).
 """
 
 import importlib

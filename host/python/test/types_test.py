@@ -1,4 +1,4 @@
-"""The annotations of the package, by mypy: of the package itself and of programs that use it."""
+"""mypy checks the annotations of the package, in the package itself and in programs that use it."""
 
 import pathlib
 import re

@@ -84,7 +84,7 @@ Coverage coverage_of(const Scene& scene, const Camera& camera, int samples, doub
   return coverage;
 }
 
-/// Returns a white floor under `lights`. kAtFloor is so close to it that all pixels are alike.
+/// Returns a white floor under `lights`. kAtFloor is so close to it that pixels hardly differ.
 Scene floor_under(Scene lights) {
   add(lights, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
   return lights;
@@ -92,7 +92,7 @@ Scene floor_under(Scene lights) {
 
 const Camera kAtFloor = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
 
-/// Prints how often the interval held, which must be 93 to 97 %, or up to `most`.
+/// Prints how often the interval contains the value, and expects 93 % to `most` %.
 void expect_coverage(const char* name, int samples, double most, const Coverage& coverage) {
   std::printf("%-22s %4d samples: %5.1f %% (pixels: %.1f to %.1f), %d seeds\n", name, samples,
               coverage.all, coverage.least, coverage.most, seeds());
@@ -109,7 +109,7 @@ TEST(ErrorEstimate, HoldsInAFurnace) {
   }
 }
 
-// If evenly spread samples have few dimensions, the error falls faster than its estimate.
+// If evenly spread samples have few dimensions, the error falls faster than the estimate.
 TEST(ErrorEstimate, IsCarefulWhereSamplesAreEvenlySpread) {
   constexpr double kPi = std::numbers::pi;
   Scene lights;
@@ -240,7 +240,7 @@ TEST(AdaptiveSampling, GoesOnFromAnyFilm) {
   EXPECT_TRUE(same_film(whole, uneven.film(options, &broken_off)));
 }
 
-// Blocks stop when their error happens to be small, which could bias the mean.
+// Blocks stop when their error happens to be small. This must not bias the mean.
 TEST(AdaptiveSampling, StoppingFavoursNoSideInTheLarge) {
   double sum = 0.0, squares = 0.0, samples = 0.0;
   int blocks = 0;

@@ -1,4 +1,4 @@
-// Caustics by light paths: closed forms, long runs without light paths, equal bytes.
+// Compares caustics by light paths with closed forms and with long runs without light paths.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ RenderSettings options_of(int size, int samples, bool caustics = true) {
   return options;
 }
 
-constexpr float kHigh = 5.0f, kThick = 1.0f;  // height of the slab's upper side; thickness
+constexpr float kHigh = 5.0f, kThick = 1.0f;  // height of the slab's top; its thickness
 
 /// Returns a dark floor below a slab of glass. above_floor() sees the central square of side 1.
 Scene slab() {
@@ -37,7 +37,7 @@ Scene slab() {
 }
 Camera above_floor() { return camera_at({0, 2, 0}, {0, 0, 0}, 2.0 * 180.0 / pi * std::atan(0.25)); }
 
-// Every reflection inside the slab transmits a little more light.
+// Every reflection inside the slab transmits a little more light, by Fresnel's formulas.
 TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
   for (const double degrees : {0.0, 5.0}) {
     const double angle = degrees * pi / 180.0;
@@ -51,8 +51,7 @@ TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
   }
 }
 
-// A point light above the slab: each order of reflection inside is a ring of its own, with a radius
-// by Snell's law.
+// Above the slab is a point light. Each number of reflections inside gives a ring, by Snell's law.
 TEST(Caustics, ASlabBendsALampsLightAsSnellSays) {
   constexpr double kLamp = 7.0, kIndex = 1.5;
   Scene scene = slab();
@@ -175,7 +174,7 @@ EnvironmentMap sky() {
   return map;
 }
 
-// Surfaces of all kinds, seen in a mirror, under a lamp and a sky with a bright part.
+// Surfaces of all kinds are seen in a mirror, under a lamp and a sky with a bright part.
 TEST(Caustics, InAMirrorHaveTheMeansOfChance) {
   Scene scene;
   add(scene, rectangle({-3, -1, -3}, {0, 0, 6}, {6, 0, 0}), matte({0.7f, 0.6f, 0.5f}));
@@ -226,7 +225,7 @@ TEST(Caustics, AreTheSameBytesWhoeverTraces) {
   }
   options.window = {};
 
-  // Stops after some samples and resumes.
+  // The render stops after some samples and resumes.
   options.channels.sums = true;
   options.end_sample = 3;
   const Film first = picture(options, cpu(bvh));

@@ -1,4 +1,4 @@
-// Direct light on surfaces against closed forms.
+// Compares direct light on surfaces with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ TEST(DirectLight, ADirectionalLightFallsOffWithTheCosineAlone) {
   }
 }
 
-// KHR_lights_punctual: the square of a ramp of the cosine.
+// By KHR_lights_punctual, intensity falls with the square of a ramp of the cosine.
 TEST(DirectLight, ASpotLightFadesBetweenItsAngles) {
   const auto seen = [](double degrees, IntegratorKind integrator) {
     const double angle = degrees * pi / 180.0;
@@ -71,8 +71,8 @@ TEST(DirectLight, LightsOfAllKindsAddUp) {
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), sum, 0.005 * sum);
 }
 
-// The path tracer samples one of many near and far lights; the mean is the sum over all, as Whitted
-// computes it. With gloss, scattered rays find lights just as often.
+// The path tracer samples one of many near and far lights. The mean is the sum over all lights, as
+// computed by Whitted. With gloss, scattered rays find lights just as often.
 TEST(DirectLight, ManyLightsAddUp) {
   for (const float gloss : {0.0f, 0.6f}) {
     Scene scene;
@@ -103,8 +103,8 @@ TEST(DirectLight, ManyLightsAddUp) {
   }
 }
 
-// A light before a sky that is darker, equal or brighter: scattered rays find both with the right
-// weight, so the mean is right.
+// The sky behind a light is darker, equal or brighter. Scattered rays find light and sky with the
+// right weights, so the mean is right.
 TEST(DirectLight, ALightBeforeASkyAddsUp) {
   for (const float radiance : {0.2f, 1.0f, 6.0f}) {
     Scene scene;
@@ -121,7 +121,7 @@ TEST(DirectLight, ALightBeforeASkyAddsUp) {
   }
 }
 
-// A parallel rectangle, one corner of which is straight above (Siegel and Howell's catalogue, B-4).
+// A corner of a parallel rectangle is straight above (Siegel and Howell's catalogue, B-4).
 TEST(DirectLight, RectangularLightHasItsFormFactor) {
   const double a = 1.5, b = 0.8, height = 1.2;
   Scene scene;
@@ -198,8 +198,8 @@ std::vector<Corners> lamp(float height) {
 }
 std::vector<Corners> wide_floor() { return rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}); }
 
-// A rough floor seen at an angle, with wide and narrow lobes, against the integral over its lamp:
-// light samples and scattered rays find the lamp.
+// A rough floor with wide or narrow lobes, seen at an angle, has the radiance of the integral over
+// its lamp. Both light samples and scattered rays find the lamp.
 TEST(DirectLight, FacetsReflectALight) {
   for (const float roughness : {0.25f, 0.6f, 1.0f}) {
     Material material = facets(0.5f, roughness, 0.0f);
@@ -219,8 +219,7 @@ TEST(DirectLight, FacetsReflectALight) {
   }
 }
 
-// A light seen through rough glass: a point light is visible, and an area light is as bright as an
-// integral says.
+// Through rough glass, a point light is visible, and an area light equals an integral.
 TEST(DirectLight, RoughGlassShowsTheLightsBehindIt) {
   for (const float roughness : {0.3f, 0.7f, 1.0f}) {
     Scene scene;
@@ -243,7 +242,7 @@ TEST(DirectLight, RoughGlassShowsTheLightsBehindIt) {
     }
     add(scene, lamp(-2), emitter(glm::vec3(3.0f)));
     const double integral = expected.of_lamp(-2);
-    // At depth 1 Whitted's rays find the lamp, too, which must not count twice.
+    // At depth 1, Whitted's rays find the lamp, too. The lamp must not count twice.
     for (const auto& [integrator, depth] : {std::pair(kPath, 1), {kWhitted, 0}, {kWhitted, 1}}) {
       options.integrator = integrator;
       options.max_depth = depth;
@@ -253,7 +252,7 @@ TEST(DirectLight, RoughGlassShowsTheLightsBehindIt) {
   }
 }
 
-// A parallel disc, straight above: sin^2 of the angle between the axis and the disc's rim.
+// The form factor of a parallel disc straight above is sin^2 of the angle from axis to rim.
 TEST(DirectLight, DiscLightHasItsFormFactor) {
   std::vector<Corners> disc;
   constexpr int kParts = 512;
@@ -269,8 +268,7 @@ TEST(DirectLight, DiscLightHasItsFormFactor) {
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 2.0 * form, 4e-3 * form);
 }
 
-// A square between a light and the floor: a pixel is lit exactly if the line to the light passes
-// beside the square.
+// Below a square, a pixel of the floor is lit exactly if its line to the light misses the square.
 TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
   Scene scene;
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
@@ -323,8 +321,8 @@ TEST(DirectLight, PathAndWhittedAgreeAboutDirectLight) {
   const glm::dvec3 whitted = mean_colour(film_of(scene, camera, options));
   options.integrator = kPath;
   const glm::dvec3 path = mean_colour(film_of(scene, camera, options));
-  // The path's last rays see lights in the mirror and through the window, where Whitted stops.
-  // There are few such lights here.
+  // The last rays of paths see lights in the mirror and through the window, where Whitted's rays
+  // end. There are few such lights here.
   EXPECT_NEAR(path.r, whitted.r, 0.02 * whitted.r);
   EXPECT_NEAR(path.g, whitted.g, 0.02 * whitted.g);
 }

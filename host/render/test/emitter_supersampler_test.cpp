@@ -1,5 +1,4 @@
-// Outlines of emitters that the camera sees directly, in mirrors or through glass are exact to a
-// fraction of a sample.
+// Outlines of emitters (direct, in mirrors, through glass) are exact to a fraction of a sample.
 #include "host/render/emitter_supersampler.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +84,7 @@ Found find(const Scene& scene, const Camera& camera, const RenderSettings& asked
 constexpr HistoryMask kDirect = 1u << 1;
 constexpr HistoryMask kInMirror = 1u << 2;
 
-/// Expects the histories of a panel of pixels [3, 6) x [2, 5) and half of the pixels around these.
+/// Expects the histories of a panel that covers pixels [3, 6) x [2, 5) and half of those around.
 void expect_around(const std::vector<HistoryMask>& ways, HistoryMask expected) {
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -121,7 +120,7 @@ TEST(EmitterSupersampler, GoStraightThroughWhatIsClear) {
   expect_around(find(panel.scene, panel.camera, options(4)).ways, kDirect);
 }
 
-// Primary rays end at the first surface, clear or not.
+// With kPrimary, rays end at the first surface, clear or not.
 TEST(EmitterSupersampler, SeesOfThePrimaryIntegratorWhatThatSees) {
   Panel panel(2.5f, 1.5f, 6.5f, 5.5f);
   const RenderSettings asked = options(4, ReconstructionFilter::kBox, IntegratorKind::kPrimary);
@@ -222,8 +221,8 @@ double error(const Panel& panel, float left, float upper, float right, float low
   return sum / (kSide * kSide);
 }
 
-// At an axis-parallel edge, the error of n samples alone is 0.4 / n on average. Eight times as many
-// samples have an eighth of it, or slightly more at corners and without a power of two.
+// At an axis-parallel edge, the error of n samples alone is 0.4 / n on average. With eight times as
+// many samples, the error is 1/8, or slightly more at corners and without a power of two.
 TEST(EmitterSupersampler, AreSharperThanTheSamplesAlone) {
   const struct {
     Projection projection;

@@ -36,7 +36,7 @@ TEST(Furnace, WhiteThingsInAWhiteWorld) {
   }
 }
 
-// For any roughness, with or without glass, light is only lost at the maximum depth; none is made.
+// For any roughness, also of glass, light is lost only at the maximum depth, and never made.
 TEST(Furnace, WhiteFacetsInAWhiteWorld) {
   struct Case {
     float metallic, roughness, transmission, least;

@@ -1,4 +1,4 @@
-// Views in mirrors and through glass, by the laws of reflection and refraction.
+// Views in mirrors and through glass obey the laws of reflection and refraction.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -139,8 +139,8 @@ TEST(MirrorGlass, PanesWeakenLightAndShadowsAlike) {
   }
 }
 
-// A lamp covers all that a pond reflects. Few samples suffice for its reflection, although most
-// light is refracted into the dark: EmitterSupersampler follows both directions.
+// A lamp covers all that a pond reflects. Most camera rays are refracted into the dark. Yet few
+// samples suffice for the lamp's reflection, because EmitterSupersampler follows both directions.
 TEST(MirrorGlass, ALampInAPondIsAsBrightAsFresnelSays) {
   Scene scene;
   add(scene, rectangle({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}), glass(1.5f));
@@ -155,7 +155,7 @@ TEST(MirrorGlass, ALampInAPondIsAsBrightAsFresnelSays) {
     squares += double{colour.x} * double{colour.x};
   }
   const double mean = sum / 256.0, deviation = std::sqrt(squares / 256.0 - mean * mean);
-  EXPECT_NEAR(mean, 0.4, 0.004);  // nearly straight down: 4 %
+  EXPECT_NEAR(mean, 0.4, 0.004);  // seen nearly straight down: 4 %
   EXPECT_LT(deviation, 0.2 * mean);
 }
 

@@ -1,4 +1,4 @@
-// Films: right in every pixel, and equal for all threads, windows and engines.
+// Films are right in every pixel, and equal for all threads, windows and engines.
 #include "host/render/renderer.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ Scene sphere_in_box() {
   return scene;
 }
 
-// An eye on a diagonal and a square picture: rays run exactly through edges and vertices.
+// The eye is on a diagonal and the picture is square: rays run exactly through edges and vertices.
 const Camera kCamera =
     Camera::look_at({glm::dvec3(2), glm::dvec3(0), glm::dvec3(0, 0, 1), 60.0}, 1.0);
 
@@ -101,7 +101,7 @@ TEST(Renderer, LambertLitFromTheCamera) {
   EXPECT_EQ(film.color[0], glm::vec4(0.5f, 0.25f, 1.0f, 1.0f));
   EXPECT_EQ(film.normal[0], glm::vec3(0, 0, 1));
   EXPECT_EQ(film.depth[0], 2.0f);
-  // With normals of the file, seen at 60 degrees from either side.
+  // Now the file has normals, and the wall is seen at 60 degrees from either side.
   const float c = 0.5f, s = std::sqrt(0.75f);
   scene.normals = {glm::vec3(s, 0, -c)};
   scene.triangles[0].normals = {0, 0, 0};
@@ -110,7 +110,7 @@ TEST(Renderer, LambertLitFromTheCamera) {
   EXPECT_NEAR(film.normal[0].z, 0.5f, 1e-6f);
 }
 
-// Requests each extra channel alone: its contents; no other channel is made or changed.
+// Each extra channel alone has the right contents, and no other channel is made or changed.
 TEST(Renderer, ExtraChannelsOnDemand) {
   Scene scene = sphere_in_box();
   scene.origin = glm::dvec3(100.0, 0.0, 0.0);
@@ -137,7 +137,7 @@ TEST(Renderer, ExtraChannelsOnDemand) {
       ASSERT_EQ(film.object[i], film.primitive[i] < sphere_size ? 0u : 1u);
     }
     for (std::size_t i = 0; i < film.position.size(); ++i) {
-      // Along the camera's axis, the point is as far away as the depth says.
+      // The distance of the point along the camera's axis is the depth.
       const glm::dvec3 from_eye =
           glm::dvec3(film.position[i]) - scene.origin - glm::dvec3(kCamera.eye());
       ASSERT_NEAR(glm::dot(from_eye, kCamera.forward()), film.depth[i], 2e-5);

@@ -1,4 +1,4 @@
-// Features besides scattering: masks, normal maps, shadow catchers; and scenes of any size.
+// Tests features besides scattering (masks, normal maps, shadow catchers), and scenes of any size.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ using namespace test;  // NOLINT(google-build-using-namespace)
 
 using enum IntegratorKind;
 
-// A shadow catcher looks like the background, and darker where something blocks the light.
+// A shadow catcher looks like the background, but darker where something blocks the light.
 TEST(Surface, AShadowCatcherIsSeenWhereItsShadowsAre) {
   Material catcher = matte(glm::vec3(0.0f));
   catcher.illumination_model = 10;

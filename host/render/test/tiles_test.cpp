@@ -96,7 +96,7 @@ TEST(TileQueue, ATileGoesOnWhileAnotherIsSlow) {
   EXPECT_TRUE(queue.begin());
 }
 
-/// 8192 x 8192 pixels with 2^20 samples have 2^32 steps.
+/// A picture of 8192 x 8192 pixels with 2^20 samples has 2^32 steps.
 TEST(TileQueue, CountsBeyond32Bits) {
   TileQueue queue(1 << 14, 1 << 18);
   EXPECT_FALSE(queue.all_begun());

@@ -46,7 +46,7 @@ class EarClipper {
     return clip_ears();
   }
 
-  /// Returns the triangles of the last cut(), as corner numbers; n - 2 for a simple polygon.
+  /// Returns the triangles of the last cut(), as corner numbers: n - 2 for a simple n-gon.
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
 
  private:
@@ -65,8 +65,8 @@ class EarClipper {
   };
   using Ear = std::array<glm::dvec2, 3>;
 
-  /// Returns whether a box and a counter-clockwise triangle are separated along one of the box's
-  /// axes or by a triangle edge, outside of which even the box's innermost corner lies.
+  /// Returns whether a box and a counter-clockwise triangle are apart: along one of the box's axes,
+  /// or because all corners of the box are outside one edge of the triangle.
   static bool are_separate(const Ear& triangle, const glm::dvec2& low, const glm::dvec2& high) {
     const auto& [a, b, c] = triangle;
     const glm::dvec2 least = glm::min(glm::min(a, b), c), most = glm::max(glm::max(a, b), c);
@@ -163,9 +163,9 @@ class EarClipper {
     return orient2d(ring_[c.previous].position, c.position, ring_[c.next].position);
   }
 
-  /// An ear is a strictly convex corner whose triangle contains no other corner, not even on its
-  /// border. Only reflex (or straight) corners need tests. A corner at the position of one of the
-  /// triangle's corners is allowed: it is the other end of a bridge to a hole.
+  /// An ear is a strictly convex corner whose triangle (with both neighbours) contains no other
+  /// corner, not even on the border. Only reflex (or straight) corners need tests. Corners at the
+  /// position of one of the triangle's corners are allowed: they belong to a bridge to a hole.
   [[nodiscard]] bool is_ear(std::uint32_t corner) const {
     if (turn_at(corner) <= 0) return false;
     if (!mind_obstacles_) return true;
@@ -221,7 +221,7 @@ class EarClipper {
       if (!candidates_.empty()) {
         listed_all = false;
       } else if (!listed_all) {
-        list_all_left();  // a corner may have become an ear, as an obstacle is gone
+        list_all_left();  // a corner may have become an ear, because an obstacle is gone
         listed_all = true;
       } else if (mind_obstacles_) {
         kind = PolygonKind::kSelfTouching;  // there is no ear, so the polygon is not simple

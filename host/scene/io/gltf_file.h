@@ -1,5 +1,5 @@
-// GltfFile: the JSON, the buffers and the images of a glTF 2.0 file, with checked access to them. A
-// part of the reader in gltf_loader.cpp.
+// GltfFile: checked access to the JSON, buffers and images of a glTF 2.0 file (a part of
+// gltf_loader.cpp).
 #pragma once
 
 #include <algorithm>
@@ -116,7 +116,7 @@ class GltfFile {
  public:
   std::string name;
   std::vector<std::filesystem::path> files;  ///< all files read so far
-  std::size_t bytes = 0;                     ///< their total size
+  std::size_t bytes = 0;                     ///< total size of `files`
   Json json;
 
   /// Appends warnings to `warnings`, which must outlive this object. Throws InputError if a file
@@ -177,7 +177,8 @@ class GltfFile {
 
   /// Returns a list of the file, such as "nodes"; null if it has none.
   [[nodiscard]] const Json& list(const char* key) const { return member(json, key); }
-  /// Returns element `index` of a list. Throws InputError, which names it `what`, if there is none.
+  /// Returns element `index` of a list. Throws InputError, which calls the element `what`, if there
+  /// is none.
   [[nodiscard]] const Json& at(const Json& list, int index, const char* what) const {
     const std::size_t size = list.is_array() ? list.size() : 0;
     if (index >= 0 && static_cast<std::size_t>(index) < size) {

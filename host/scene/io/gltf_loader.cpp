@@ -39,7 +39,7 @@ using Shape = std::pair<int, std::vector<double>>;
 /// A mesh with several instances.
 struct SharedMesh {
   Scene part;   ///< moved to `instancer` at the first instance
-  Bounds3 box;  ///< of its positions
+  Bounds3 box;  ///< bounds of the part's positions
   std::optional<MeshInstancer> instancer;
 };
 
@@ -173,7 +173,7 @@ class GltfReader {
       const Shape shape = shape_of(node);
       const int skin = index_in(node, "skin");
       if (skin < 0 && uses_[shape] > 1) {
-        instances_.push_back({shape, world * glm::dmat4(1.0), object});  // without negative zeros
+        instances_.push_back({shape, world * glm::dmat4(1.0), object});  // removes negative zeros
       } else {
         Placement placement{world, &shape.second, {}};
         if (skin >= 0) file_.optionally("left out", [&] { placement.joints = joints_of(skin); });
@@ -363,8 +363,7 @@ class GltfReader {
     return corners;
   }
 
-  /// Returns the numbers of an attribute plus the weighted sum of its morph targets; an empty list
-  /// if there is no such attribute.
+  /// Returns an attribute's numbers plus the weighted sum of its morph targets; empty if missing.
   std::vector<double> attribute(const Json& primitive, const std::string& name, std::size_t width,
                                 std::size_t vertices, const std::vector<double>& weights = {}) {
     const int accessor = index_in(member(primitive, "attributes"), name.c_str());

@@ -1,5 +1,4 @@
-// GltfMaterials: converts the materials and textures of a glTF file to those of a Scene. A part of
-// the reader in gltf_loader.cpp.
+// GltfMaterials: converts materials and textures of a glTF file (a part of gltf_loader.cpp).
 #pragma once
 
 #include <algorithm>
@@ -90,7 +89,7 @@ class GltfMaterials {
     return index == -1 ? kDefault : file_.at(file_.list("materials"), index, "material");
   }
 
-  /// Returns the `size` numbers at a key; none if it is absent or, with a warning, wrong.
+  /// Returns the `size` numbers at a key; none if the key is absent or, with a warning, wrong.
   std::vector<double> numbers(const Json& object, const char* key, std::size_t size) {
     std::vector<double> numbers = numbers_in(object, key);
     if (numbers.size() == size) return numbers;
@@ -100,8 +99,8 @@ class GltfMaterials {
     return {};
   }
 
-  /// Returns a texture's decoded image; nullopt if images are not decoded or, with a warning, if it
-  /// has none. Throws InputError for a damaged image and for too many pixels in all images.
+  /// Returns a texture's decoded image; nullopt if images are not decoded or, with a warning, if no
+  /// image is named. Throws InputError for a damaged image and for too many pixels in all images.
   std::optional<Texture> picture(const Json& texture, Texture::Content content) {
     if (!textures_) return std::nullopt;
     const int source = index_in(texture, "source");
@@ -174,7 +173,8 @@ class GltfMaterials {
     const Json& transform = extension(info, kTransform);
     if (transform.is_null()) return map;
     map.mapping.scale = pair_in(transform, "scale", glm::vec2(1.0f));
-    // v points down in files: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o (cosine, scale, offset).
+    // v points down in glTF, but the scene's v' = 1 - v points up. With cosine c, scale s and
+    // offset o, 1 - (c s v + o) = c s v' + (1 - c s - o), so the offset becomes 1 - c s - o.
     const glm::vec2 offset = pair_in(transform, "offset", glm::vec2(0.0f));
     const double angle = number_in(transform, "rotation", 0.0);
     map.mapping.turn = {std::cos(angle), std::sin(angle)};

@@ -240,7 +240,7 @@ class MtlReader {
     if (keyword == "map_Kd" && !draft_.has_diffuse) draft_.material.diffuse = glm::vec3(1.0f);
   }
 
-  /// Takes one to three numbers and returns two of them: the third is for solid textures.
+  /// Takes one to three numbers and returns the first two; the third is for solid textures.
   static glm::vec2 take_vector(const std::string& what, Words& words, float missing) {
     glm::vec3 uvw(missing);
     for (int i = 0; i == 0 || (i < 3 && to_number(words.peek())); ++i) {

@@ -17,7 +17,7 @@ constexpr std::size_t kSpare = 64;  // capacity for area lights and the ground
 constexpr glm::vec3 kNoColor(-1.0f);
 constexpr std::size_t kCheckpointFaces = 4096;
 
-/// A kind of flaw. Its one warning counts the faces that have it and names the first.
+/// A kind of flaw. One warning gives the number of faces with the flaw and the first face's line.
 struct Flaw {
   std::string text;
   std::size_t count = 0, first_line = 0;

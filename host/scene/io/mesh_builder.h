@@ -118,15 +118,15 @@ class MeshBuilder {
   std::vector<glm::vec4> tangents_;  // of the first normals
   std::vector<glm::vec2> texcoords_;
   std::vector<glm::vec2> second_texcoords_;  // of the first texture coordinates
-  std::vector<float> opacities_;             // likewise
+  std::vector<float> opacities_;             // of the first texture coordinates
   std::vector<FaceCorner> corners_;
   std::vector<Face> faces_;
 };
 
 /// Returns the origin to subtract from all positions of a scene with these bounds: a point on a
-/// grid whose step is a power of two about the box's size. It is zero for a box near the world's
-/// origin. The subtraction is exact for coordinates that exceed three times the box's extent, and
-/// no difference exceeds three times the extent.
+/// grid whose step is a power of two about the box's size. The result is 0 for a box near the
+/// world's origin. The subtraction is exact for coordinates that exceed three times the box's
+/// extent, and no difference exceeds three times the extent.
 [[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
 
 /// Sets the normals of triangles that have no normals but a smooth edge. The normal at a corner is

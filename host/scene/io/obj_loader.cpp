@@ -138,7 +138,7 @@ class ObjReader {
         if (index < 0 && field == 0) {
           fail(", but the file has " + std::to_string(so_far[0]) + " vertices so far");
         }
-        const bool is_none = number == 0 || index < 0;  // MeshBuilder warns of such an index
+        const bool is_none = number == 0 || index < 0;  // MeshBuilder warns of kNoIndex - 1
         indices[field] = is_none ? kNoIndex - 1 : static_cast<std::uint32_t>(index);
         at = rest;
       }
@@ -206,13 +206,13 @@ class ObjReader {
     object_is_known_ = true;
   }
 
-  /// Resolves the names of materials at the end of the file, as mtllib may come after usemtl.
+  /// Resolves material names at the end of the file, because mtllib may come after usemtl.
   void assign_materials() {
     NameNumbers defined;  // the first of each name
     for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) {
       Material& material = scene_.materials[i];
       defined.emplace(material.name, i);
-      // Scanners duplicate the texture's colours at the vertices.
+      // With a texture, vertex colours are ignored: scanners repeat the texture's colours there.
       material.has_vertex_colors = material.diffuse_map.file.empty();
     }
     std::uint32_t default_material = kNoIndex;
@@ -246,8 +246,8 @@ class ObjReader {
   Scene& scene_;
   NameNumbers objects_, materials_;               // materials_: names in usemtl
   std::vector<std::string> first_uses_;           // "file:line: " of the first use of each material
-  std::string object_, group_;                    // the current ones; empty: none
-  bool object_is_known_ = false;                  // whether face_.object is the index of both
+  std::string object_, group_;                    // current names of o and g; empty: none
+  bool object_is_known_ = false;                  // whether face_.object is up to date with them
   FaceAttributes face_{.material = kNoIndex};     // of the next face; kNoIndex: no usemtl
   std::set<std::string, std::less<>> warned_of_;  // keywords
   std::array<double, 7> numbers_{};               // of one statement

@@ -106,7 +106,7 @@ class PlyReader {
   }
 
   void read_header(std::vector<std::string>& warnings) {
-    // The first line determines the line ending, as binary data after the header may resemble one.
+    // The first line determines the line ending: binary data after the header may resemble one.
     if (text_.starts_with("ply\r") && !text_.starts_with("ply\r\n")) line_end_ = '\r';
     if (next_line() != "ply") words_.fail("not a PLY file: its first line is not \"ply\"");
     bool has_format = false;

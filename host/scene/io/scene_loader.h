@@ -17,7 +17,7 @@ namespace raygate {
 enum class Vertices {
   kBinary64,  ///< all that do not fit binary32
   /// All, if rounding to binary32 would move a corner by more than a hundredth of the size of a
-  /// face that has an area; otherwise none. Pictures need no more.
+  /// face that has an area; otherwise none. This is enough for pictures.
   kAsPictures,
   kBinary32,  ///< none
 };

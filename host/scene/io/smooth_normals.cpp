@@ -81,8 +81,7 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
                     [](const Edge& edge) { return std::tuple(edge.low, edge.high, edge.corner); });
 
   const auto count = static_cast<Corner>(3 * scene.triangles.size());
-  // A union-find forest of corners connected by smooth edges. Each refers to an earlier corner or
-  // itself.
+  // A union-find forest of corners connected by smooth edges. Roots refer to themselves.
   std::vector<Corner> joined(count);
   std::iota(joined.begin(), joined.end(), 0u);
   std::vector<bool> is_joined(count);

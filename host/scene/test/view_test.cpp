@@ -58,7 +58,7 @@ TEST(View, StandsWhereItsAnglesSay) {
   expect_near(*frame_scene(scene, 1, 35, {0, 90, kZ}).up, kY);
 }
 
-/// Returns how far from the picture's centre the corners of a box are seen; 1: at an edge.
+/// Returns the largest distance of a box's corners from the picture's centre; 1: at an edge.
 double reach(const Camera& camera, double aspect, const glm::dvec3& low, const glm::dvec3& high) {
   double result = 0.0;
   for (int corner = 0; corner < 8; ++corner) {

@@ -1,5 +1,4 @@
-// Rays of damaged tables can be traced, or the table is refused with one line. Large tables do not
-// take much memory.
+// Damaged tables can be traced or are refused with one line. Large tables take little memory.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -54,7 +53,7 @@ class DamagedRays : public testing::Test {
     return outcome;
   }
 
-  int file_ = memfd_create("rays", 0);  // in memory, as thousands of tables are written
+  int file_ = memfd_create("rays", 0);  // in memory, because thousands of tables are written
   std::filesystem::path path_ = "/proc/self/fd/" + std::to_string(file_);
   test::Damage damage_{20261122, kSplinters};
 };

@@ -73,7 +73,7 @@ TEST(Arithmetic, OfFewDigitsRoundsOnce) {
   }
 }
 
-// The paper's worked example, 1.75 * 3.3125 / 59.225830078125 and so on, truncated to 21 digits.
+// The paper's worked example computes 1.75 * 3.3125 / 59.225830078125 etc., truncated to 21 digits.
 TEST(Arithmetic, QuotientsOfThePaper) {
   const Arithmetic math{.quotient_digits = 21};
   EXPECT_EQ(bits(math.divide(5.796875f, 59.225830078125f)), 0x3DC873F8u);

@@ -106,7 +106,7 @@ TEST(VariantHitTester, IsOftenWrongWhereTheyAreIgnored) {
 }
 
 TEST(VariantHitTester, IgnoringDoubtsKeepsTheNearestOfABurst) {
-  // Three parallel triangles across the axis: a farther one, then two at the same distance.
+  // Three parallel triangles cross the axis: a far triangle, then two at the same smaller distance.
   std::vector<PolygonRecord> records;
   for (const float z : {3.0f, 2.0f, 2.0f}) {
     const Corners triangle = {glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)};

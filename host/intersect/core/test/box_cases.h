@@ -43,7 +43,7 @@ class BoxCases {
         child.high[k] = one_in(6) ? child.low[k] : std::max(a, b);
       }
     }
-    // Mostly through a corner of a box, from any distance; sometimes parallel to a plane.
+    // Most rays go through a corner of a box, from any distance. Some are parallel to a plane.
     const NodeLine::Child& aim = node.child[random_() % NodeLine::kChildren];
     const float distance = std::ldexp(1.0f, one_in(8) ? between(-20, 20) : between(-2, 3));
     for (int k = 0; k < 3; ++k) {

@@ -1,6 +1,5 @@
-// The reference model of the ray core finds the hits of CpuIntersector, bit for bit. With an exact
-// core the host resolves no doubts. The box unit omits no box that a ray enters in rational
-// arithmetic.
+// The reference model of the ray core finds the hits of CpuIntersector, bit for bit. Exact cores
+// have no doubts. The box unit omits no box that a ray enters in rational arithmetic.
 #include "host/intersect/core/core_intersector.h"
 
 #include <gmpxx.h>
@@ -160,7 +159,7 @@ TEST_F(ExactCoreTest, LimitsSkippedTrianglesFirstHitsAndSourcesCount) {
   std::vector<float> limits;
   std::vector<std::uint32_t> skipped;
   for (const NearestHit& hit : nearest) {
-    // Mostly at the hit or within a few floats on either side.
+    // Most limits are at the hit or within a few floats on either side.
     float limit = 1.0f;
     if (hit.primitive != NearestHit::kNone) {
       limit =

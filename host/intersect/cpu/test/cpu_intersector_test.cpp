@@ -1,6 +1,5 @@
-// CpuIntersector finds the hits of the unit's reference model, with the same bits of P, in packets
-// and ray by ray, with all vectors. Ties and limits are exact. all_hits() finds the hits of
-// rational arithmetic.
+// CpuIntersector finds the hits and points of the unit's reference model, in packets and ray by
+// ray, for all instruction sets. Ties and limits are exact. all_hits() agrees with rationals.
 #include "host/intersect/cpu/cpu_intersector.h"
 
 #include <gtest/gtest.h>
@@ -181,8 +180,7 @@ TEST_P(CpuIntersectorTest, FindsWhatBatchesFindAtAnyScale) {
   }
 }
 
-// A hit exactly at the limit does not count, and of two hits at equal t the lower triangle index
-// is reported.
+// A hit at the limit does not count. Of two hits at equal t, the lower triangle index is reported.
 TEST(CpuIntersector, LimitsAndTiesAreExact) {
   const Corners wall = {glm::vec3(-4, -4, 3), glm::vec3(4, -4, 3), glm::vec3(0, 4, 3)};
   const Bvh bvh(test::scene_of({wall, wall}));

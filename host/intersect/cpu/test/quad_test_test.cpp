@@ -1,5 +1,4 @@
-// Sure verdicts of float32 agree with exact arithmetic on difficult rays and triangles, for
-// test_quad and for QuadRecord.
+// Sure verdicts of test_quad and of QuadRecord agree with exact arithmetic in difficult cases.
 #include "host/intersect/cpu/quad_test.h"
 
 #include <gtest/gtest.h>

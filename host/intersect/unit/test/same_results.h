@@ -25,9 +25,9 @@ inline bool earlier(const BurstResult& a, const BurstResult& b) {
 
 }  // namespace detail
 
-/// Throws EngineMismatch at the first burst whose `actual` bits differ from those `expected`. The
-/// text can be replayed: the burst's direction, the 16 words of each record in hexadecimal, and the
-/// results of both units.
+/// Throws EngineMismatch at the first burst whose `actual` bits differ from the `expected` ones.
+/// The text has the burst's direction, the 16 words of each record in hexadecimal, and the results
+/// of both units, so that the burst can be replayed.
 inline void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
                          const BurstResults& expected) {
   const auto [a, e] = std::ranges::mismatch(actual, expected);

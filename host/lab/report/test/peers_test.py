@@ -1,4 +1,4 @@
-"""Conversion of a small room's faces, materials and lamps for Mitsuba, and rows that compare both renderers."""
+"""Tests the conversion of a small room for Mitsuba (faces, materials, lamps), and rows that compare both renderers."""
 
 import json
 import pathlib
@@ -93,7 +93,7 @@ class Peers(unittest.TestCase):
     def test_lamps_face_what_they_light(self):
         found = self.converted()
         lamps = [part for part in found.values() if isinstance(part, dict) and "emitter" in part]
-        # The OBJ file's lamp has everything below it; the scene file's lamp has surfaces on both sides, so it becomes two.
+        # The OBJ file's lamp has everything below it; the scene file's lamp has surfaces on both sides, so it becomes two lamps.
         self.assertEqual([lamp["emitter"]["radiance"]["value"] for lamp in lamps], [[3, 2, 1], [4, 5, 6], [4, 5, 6]])
         heights = []
         for lamp in lamps:

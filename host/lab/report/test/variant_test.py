@@ -1,4 +1,4 @@
-"""The card of one variant: the command line's words, and the card's figures."""
+"""Tests the card of one variant: the command line's words, and the card's figures."""
 
 import pathlib
 import tempfile

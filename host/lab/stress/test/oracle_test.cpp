@@ -1,4 +1,4 @@
-// The oracle's integers against rationals, and its results in simple cases.
+// Compares the oracle with rational arithmetic, and checks its results in simple cases.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The exact unit's reference model against host/exact and integers.
+// Compares the exact unit's reference model with host/exact and with integers.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -38,7 +38,7 @@ Shot shot_of(const std::string& line) {
   return {std::make_shared<const Mesh>(mesh), vectors.at(0), {vectors.at(1)}};
 }
 
-// Minimised cases of former errors, one per line of regressions.txt.
+// regressions.txt has one minimised case of a former error per line.
 TEST(Regressions, VerdictsOfExactSubjectsAreTheTruth) {
   std::ifstream file(RAYGATE_REGRESSIONS);
   std::vector<Shot> shots;

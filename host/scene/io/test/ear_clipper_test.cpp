@@ -22,9 +22,9 @@ Polygon in_plane(const std::vector<glm::dvec2>& points) {
   return polygon;
 }
 
-// Expects a correct triangulation: n - 2 triangles, all with an area and the polygon's winding (1:
-// counter-clockwise from +z); each side of the polygon belongs to one triangle, in its direction,
-// each other side to two, in opposite directions. So they cover the polygon exactly once.
+// Expects triangles that cover the polygon exactly once: n - 2 triangles with an area and the
+// polygon's winding (1: counter-clockwise from +z). Each side of the polygon belongs to one
+// triangle, in the same direction. Every other side belongs to two, in opposite directions.
 void expect_triangulation(const Polygon& polygon, const EarClipper& clipper, int winding = 1) {
   ASSERT_EQ(clipper.triangles().size(), polygon.size() - 2);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
