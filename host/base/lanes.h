@@ -285,33 +285,35 @@ RAYGATE_INLINE T joined(const Quad& quad) {
   }
 }
 
-/// Transposes the rows: element i of row k becomes element k of row i.
-template <class Quad>
-RAYGATE_INLINE void transpose(Quad (&rows)[kQuad]) {
-  const Quad ab_low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
-  const Quad ab_high = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
-  const Quad cd_low = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
-  const Quad cd_high = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
-  rows[0] = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
-  rows[1] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
-  rows[2] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
-  rows[3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+/// Returns, for each quad of lanes, elements i and j of a, then those of b.
+template <int i, int j, class T>
+RAYGATE_INLINE T pick(const T& a, const T& b) {
+  if constexpr (kLanesOf<T> == kQuad) {
+    return __builtin_shufflevector(a, b, i, j, 4 + i, 4 + j);
+  } else {
+    return __builtin_shufflevector(a, b, i, j, 8 + i, 8 + j, 4 + i, 4 + j, 12 + i, 12 + j);
+  }
 }
 
+/// Transposes the rows: element i of row k becomes element k of row i, in each quad of four rows.
+template <class T>
+RAYGATE_INLINE void transpose(T (&rows)[kQuad]) {
+  const T ab[2] = {pick<0, 1>(rows[0], rows[1]), pick<2, 3>(rows[0], rows[1])};
+  const T cd[2] = {pick<0, 1>(rows[2], rows[3]), pick<2, 3>(rows[2], rows[3])};
+  for (int i = 0; i < 2; ++i) {
+    rows[2 * i] = pick<0, 2>(ab[i], cd[i]);
+    rows[2 * i + 1] = pick<1, 3>(ab[i], cd[i]);
+  }
+}
 RAYGATE_INLINE void transpose(FloatLanes (&rows)[kLanes]) {
-  FloatLanes pairs[kLanes], fours[kLanes];
-  for (int i = 0; i < kLanes; i += 2) {  // elements 0, 1, 4, 5 of two rows, then 2, 3, 6, 7
-    pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
-    pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-  }
-  for (int i = 0; i < kLanes; ++i) {  // elements i % 4 and i % 4 + 4 of four rows
-    const FloatLanes &low = pairs[i / 4 * 4 + i % 4 / 2], &high = pairs[i / 4 * 4 + i % 4 / 2 + 2];
-    fours[i] = i % 2 == 0 ? __builtin_shufflevector(low, high, 0, 1, 8, 9, 4, 5, 12, 13)
-                          : __builtin_shufflevector(low, high, 2, 3, 10, 11, 6, 7, 14, 15);
-  }
-  for (int i = 0; i < 4; ++i) {
-    rows[i] = __builtin_shufflevector(fours[i], fours[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-    rows[i + 4] = __builtin_shufflevector(fours[i], fours[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  FloatLanes halves[2][kQuad];  // of rows 0 to 3, and 4 to 7
+  for (int i = 0; i < kLanes; ++i) halves[i / kQuad][i % kQuad] = rows[i];
+  transpose(halves[0]);
+  transpose(halves[1]);
+  for (int i = 0; i < kQuad; ++i) {
+    const FloatLanes &low = halves[0][i], &high = halves[1][i];
+    rows[i] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 8, 9, 10, 11);
+    rows[i + kQuad] = __builtin_shufflevector(low, high, 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
 

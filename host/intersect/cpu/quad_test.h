@@ -100,18 +100,20 @@ struct ShearedRay {
   }
 };
 
-/// Computes the words of four ShearedRays, one per lane, from origins and directions by axis.
-RAYGATE_INLINE void shear(const FloatQuad (&o)[3], const FloatQuad (&d)[3],
-                          FloatQuad (&words)[sizeof(ShearedRay) / sizeof(float)]) {
-  FloatQuad size[3];
+/// Computes the words of ShearedRays, one per lane, from origins and directions by axis.
+template <class Floats>
+RAYGATE_INLINE void shear(const Floats (&o)[3], const Floats (&d)[3],
+                          Floats (&words)[sizeof(ShearedRay) / sizeof(float)]) {
+  Floats size[3];
   for (int k = 0; k < 3; ++k) size[k] = absolute(d[k]);
-  const IntQuad z_is_z = (size[2] >= size[0]) & (size[2] >= size[1]), z_is_y = size[1] >= size[0];
+  const IntOf<Floats> z_is_z = (size[2] >= size[0]) & (size[2] >= size[1]),
+                      z_is_y = size[1] >= size[0];
   const auto pick = [&](const auto& z, const auto& y, const auto& x)
       __attribute__((always_inline)) {
     return z_is_z ? z : (z_is_y ? y : x);
   };
-  constexpr IntQuad kAxis[3] = {{0, 0, 0, 0}, {1, 1, 1, 1}, {2, 2, 2, 2}};
-  FloatQuad way[3];
+  constexpr IntOf<Floats> kAxis[3] = {IntOf<Floats>{}, IntOf<Floats>{} + 1, IntOf<Floats>{} + 2};
+  Floats way[3];
   for (int k = 0; k < 3; ++k) {
     const int of_y = (k + 2) % 3, of_x = (k + 1) % 3;
     words[k] = float_of(pick(kAxis[k], kAxis[of_y], kAxis[of_x]));

@@ -93,50 +93,57 @@ struct alignas(64) RayTraversal {
 
 /// Starts rays at the root, without limits. Returns a mask: bit i is set if ray i is scaled;
 /// otherwise the ray's traversal is undefined.
-RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
-                              RayTraversal* const (&walks)[kQuad]) {
+template <class Floats>
+RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kLanesOf<Floats>],
+                              RayTraversal* const (&walks)[kLanesOf<Floats>]) {
+  using Ints = IntOf<Floats>;
   static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
   constexpr std::int32_t kRow = sizeof(Bvh::Node::bounds[0][0]);
   static_assert(offsetof(Bvh::Node, bounds) == 0);
-  FloatQuad first[kQuad], last[kQuad];  // the rays' first four words, and their last four
+  Floats first[kQuad], last[kQuad];  // the rays' first four words, and their last four
   for (int i = 0; i < kQuad; ++i) {
-    first[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i]));
-    last[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i] + 1) - kQuad);
+    const auto words_of = [&](int half) {
+      return reinterpret_cast<const float*>(rays[4 * half + i]);
+    };
+    first[i] =
+        joined<Floats>([&](int half) RAYGATE_BODY { return load<FloatQuad>(words_of(half)); });
+    last[i] =
+        joined<Floats>([&](int half) RAYGATE_BODY { return load<FloatQuad>(words_of(half) + 2); });
   }
   transpose(first);
   transpose(last);
-  const FloatQuad o[3] = {first[0], first[1], first[2]}, d[3] = {last[1], last[2], last[3]};
+  const Floats o[3] = {first[0], first[1], first[2]}, d[3] = {last[1], last[2], last[3]};
   // The words of a RayTraversal up to `work`.
   constexpr std::size_t kBoxWords = 16, kWords = 32;
   static_assert(offsetof(RayTraversal, sheared) == 4 * kBoxWords);
   static_assert(offsetof(RayTraversal, work) == 4 * kWords && kWords % kQuad == 0);
-  FloatQuad words[kWords], sheared[sizeof(ShearedRay) / sizeof(float)];
-  const auto word = [&](std::size_t offset) __attribute__((always_inline))->FloatQuad& {
+  Floats words[kWords], sheared[sizeof(ShearedRay) / sizeof(float)];
+  const auto word = [&](std::size_t offset) __attribute__((always_inline))->Floats& {
     return words[offset / sizeof(float)];
   };
   shear(o, d, sheared);
   std::copy(std::begin(sheared), std::end(sheared), words + kBoxWords);
-  const FloatQuad zero = {}, infinity = zero + std::numeric_limits<float>::infinity();
+  const Floats zero = {}, infinity = zero + std::numeric_limits<float>::infinity();
   word(offsetof(RayTraversal, cutoff)) = zero + std::numeric_limits<float>::max();
   word(offsetof(RayTraversal, low)) = word(offsetof(RayTraversal, high)) = infinity;
   word(offsetof(RayTraversal, enough)) = zero - 1.0f;
-  const FloatQuad none = float_of(IntQuad{} + static_cast<std::int32_t>(NearestHit::kNone));
+  const Floats none = float_of(Ints{} + static_cast<std::int32_t>(NearestHit::kNone));
   word(offsetof(RayTraversal, primitive)) = none;
   word(offsetof(RayTraversal, skip_id)) = word(offsetof(RayTraversal, source_id)) = none;
   word(offsetof(RayTraversal, number)) = none;  // set by the caller
-  IntQuad largest = {};
-  for (const FloatQuad& component : d) {
+  Ints largest = {};
+  for (const Floats& component : d) {
     // The bits of a NaN exceed those of any number.
     largest = maximum(bits_in(absolute(component)), largest);
   }
-  const FloatQuad longest = float_of(largest);
+  const Floats longest = float_of(largest);
   for (int k = 0; k < 3; ++k) {
-    const FloatQuad size = absolute(d[k]);
-    const IntQuad small = size < kSmallestComponent, back = d[k] < 0.0f;
-    const FloatQuad one = {1.0f, 1.0f, 1.0f, 1.0f}, sign = back ? -one : one;
-    const FloatQuad minus_inverse = -(longest / (small ? sign * kSmallestComponent : d[k]));
-    const FloatQuad minus_infinity = sign * -std::numeric_limits<float>::infinity();
-    const IntQuad to_high = back & (3 * kRow), low_at = IntQuad{} + k * kRow;
+    const Floats size = absolute(d[k]);
+    const Ints small = size < kSmallestComponent, back = d[k] < 0.0f;
+    const Floats one = Floats{} + 1.0f, sign = back ? -one : one;
+    const Floats minus_inverse = -(longest / (small ? sign * kSmallestComponent : d[k]));
+    const Floats minus_infinity = sign * -std::numeric_limits<float>::infinity();
+    const Ints to_high = back & (3 * kRow), low_at = Ints{} + k * kRow;
     words[k] = o[k];
     words[3 + k] = minus_inverse;
     words[6 + k] = kExitGrowth * (small ? minus_infinity : minus_inverse);
@@ -144,10 +151,12 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
     words[12 + k] = float_of(low_at + 3 * kRow - to_high);
   }
   for (std::size_t word = 0; word < kWords; word += kQuad) {
-    FloatQuad rows[kQuad] = {words[word], words[word + 1], words[word + 2], words[word + 3]};
+    Floats rows[kQuad] = {words[word], words[word + 1], words[word + 2], words[word + 3]};
     transpose(rows);
-    for (int i = 0; i < kQuad; ++i) {
-      std::memcpy(reinterpret_cast<char*>(walks[i]) + 4 * word, &rows[i], sizeof rows[i]);
+    const auto* const quads = reinterpret_cast<const FloatQuad*>(rows);
+    constexpr int kEach = kLanesOf<Floats> / kQuad;  // quads in a row
+    for (int i = 0; i < kLanesOf<Floats>; ++i) {
+      store(reinterpret_cast<char*>(walks[i]) + 4 * word, quads[kEach * (i % kQuad) + i / kQuad]);
     }
   }
   for (RayTraversal* const walk : walks) {
@@ -313,7 +322,7 @@ class SingleRayIntersector {
  private:
   // Number of interleaved rays: enough to hide memory latency, few enough for a 32 KB cache that
   // another thread of the core may share.
-  static constexpr int kAtOnce = 24;
+  static constexpr int kAtOnce = 32;
 
   /// Completes the tests of a leaf after find_sides(). Returns false if the ray can end.
   RAYGATE_INLINE bool judge(RayTraversal& walk, const Bvh::Child& leaf, const QuadSides& sides,
@@ -382,13 +391,15 @@ class SingleRayIntersector {
   }
 
   /// Starts the next rays, one in each walk. Returns a mask of the walks with a ray to trace.
-  RAYGATE_INLINE LaneMask begin(RayTraversal* const (&walks)[kQuad]) {
+  template <class Floats>
+  RAYGATE_INLINE LaneMask begin(RayTraversal* const (&walks)[kLanesOf<Floats>]) {
+    constexpr std::size_t kMost = kLanesOf<Floats>;
     const auto first = static_cast<std::uint32_t>(next_);
-    const std::size_t count = std::min<std::size_t>(kQuad, rays_.size() - next_);
-    const Ray* rays[kQuad];
-    for (std::size_t i = 0; i < kQuad; ++i) rays[i] = &rays_[next_ + std::min(i, count - 1)];
+    const std::size_t count = std::min(kMost, rays_.size() - next_);
+    const Ray* rays[kMost];
+    for (std::size_t i = 0; i < kMost; ++i) rays[i] = &rays_[next_ + std::min(i, count - 1)];
     next_ += count;
-    const LaneMask all = (1u << count) - 1, scaled = raygate::begin(rays, walks) & all;
+    const LaneMask all = (1u << count) - 1, scaled = raygate::begin<Floats>(rays, walks) & all;
     for (const int i : SetBits(all & ~scaled)) {
       if (is_usable(rays[i]->direction)) throw_unscaled(*rays[i]);
     }
@@ -436,18 +447,20 @@ class SingleRayIntersector {
         LaneMask open;
         QuadSides sides;
       } near[kAtOnce];
+      using Floats = NativeFloats<code()>;
+      constexpr std::size_t kStarted = kLanesOf<Floats>;
       std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
       const BvhView tree(bvh_);
       for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
       for (;;) {
-        while (idle_count >= kQuad && next_ < rays_.size()) {
-          idle_count -= kQuad;
-          RayTraversal* four[kQuad];
-          std::copy_n(idle + idle_count, kQuad, four);
-          const LaneMask started = begin(four);
-          for (int i = 0; i < kQuad; ++i) {
+        while (idle_count >= kStarted && next_ < rays_.size()) {
+          idle_count -= kStarted;
+          RayTraversal* walks_to_start[kStarted];
+          std::copy_n(idle + idle_count, kStarted, walks_to_start);
+          const LaneMask started = begin<Floats>(walks_to_start);
+          for (std::size_t i = 0; i < kStarted; ++i) {
             const std::size_t on_its_way = started >> i & 1;
-            inside[inside_count] = idle[idle_count] = four[i];
+            inside[inside_count] = idle[idle_count] = walks_to_start[i];
             inside_count += on_its_way;
             idle_count += on_its_way ^ 1;
           }
