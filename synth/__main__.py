@@ -1,6 +1,7 @@
 """`python3 -m synth`: see `--help`, or synth/README.md."""
 
 import argparse
+import contextlib
 import pathlib
 import resource
 import sys
@@ -88,9 +89,7 @@ def main() -> int:
     given = arguments()
     if given.publish and (given.top or not given.all or given.liberty or given.targets):
         raise ValueError("PUBLISH=1: expected the whole report, ALL=1 without TOP, LIBERTY and TARGETS")
-    if not chosen.is_file(given.adder):
-        return run(given)
-    with brought.in_place(brought.bring({"ADDER": given.adder})):
+    with brought.in_place(brought.bring({"ADDER": given.adder})) if given.adder.endswith(".sv") else contextlib.nullcontext():
         return run(given)
 
 

@@ -41,16 +41,11 @@ def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
     return parser.parse_args([re.sub("^--[A-Z-]+", lambda name: name[0].lower(), word) for word in sys.argv[1:]])
 
 
-def is_file(adder: str) -> bool:
-    """Returns whether option --adder names a user's file, which replaces the prefix adder (see brought.py)."""
-    return adder.endswith((".sv", ".v"))
-
-
 def design(given: argparse.Namespace) -> catalogue.Design:
     """Returns the design that `given.top` and the options describe."""
     parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width, "Exact": given.exact}
     kind = given.adder or ("graded" if given.groups else "")
-    own = pathlib.Path(kind).stem if is_file(kind) else ""
+    own = kind.endswith(".sv") and f"{given.top}-{pathlib.Path(kind).stem}"  # a user's file, in place of the prefix adder
     kind = "prefix" if own else kind
     kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]
     if kind and kind not in kinds:
@@ -60,6 +55,5 @@ def design(given: argparse.Namespace) -> catalogue.Design:
             raise ValueError(f"the groups have {sum(given.groups)} bits together, the adder {given.width}")
         parameters["Width"] = sum(given.groups)
     return catalogue.design(
-        given.top, f"{given.top}-{own}" if own else "", adder=kind, widths=given.groups,
-        look_ahead=None if given.look_ahead is None else bool(given.look_ahead),
+        given.top, own or "", adder=kind, widths=given.groups, look_ahead=None if given.look_ahead is None else bool(given.look_ahead),
         **{name: value for name, value in parameters.items() if value is not None})

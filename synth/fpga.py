@@ -129,8 +129,7 @@ def main() -> int:
     """Places the units, prints and keeps their table. Returns 1 if one fails, 2 for errors that the user can correct."""
     parser = argparse.ArgumentParser(prog="synth.fpga", description="Places and routes the units on FPGAs.")
     parser.add_argument("names", nargs="*", help="beginnings of units' names; all if none")
-    parser.add_argument("--seeds", type=int, default=3, help="placements, of which the median counts "
-                        "(%(default)s)")
+    parser.add_argument("--seeds", type=int, default=3, help="placements, of which the median counts (%(default)s)")
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
     parser.add_argument("--publish", action="store_true", help="write the table into the pages of hw that have a place for it")
     given = parser.parse_args()

@@ -447,8 +447,7 @@ class SingleRayIntersector {
         LaneMask open;
         QuadSides sides;
       } near[kAtOnce];
-      using Floats = NativeFloats<code()>;
-      constexpr std::size_t kStarted = kLanesOf<Floats>;
+      constexpr std::size_t kStarted = kLanesOf<NativeFloats<code()>>;
       std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
       const BvhView tree(bvh_);
       for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
@@ -457,7 +456,7 @@ class SingleRayIntersector {
           idle_count -= kStarted;
           RayTraversal* walks_to_start[kStarted];
           std::copy_n(idle + idle_count, kStarted, walks_to_start);
-          const LaneMask started = begin<Floats>(walks_to_start);
+          const LaneMask started = begin<NativeFloats<code()>>(walks_to_start);
           for (std::size_t i = 0; i < kStarted; ++i) {
             const std::size_t on_its_way = started >> i & 1;
             inside[inside_count] = idle[idle_count] = walks_to_start[i];
