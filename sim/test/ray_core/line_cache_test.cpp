@@ -214,6 +214,10 @@ TEST_F(LineCacheTest, HitsNeedNoMemory) {
   for (int i = 0; i < 2'000; ++i) clock(8, kLines);
   drain();
   EXPECT_EQ(misses_, kLines);
+  model_->valid_i = model_->demand_i = model_->ready_i = 1;
+  int clocks = 0;
+  for (; model_->valid_o == 0 && clocks < 100; ++clocks, model_->valid_i = 0) model_.clock();
+  EXPECT_EQ(clocks, 5) << "the latency in the module's header";
 }
 
 }  // namespace
