@@ -13,7 +13,7 @@ from synth import catalogue, cores, fpga, store, tools
 
 @dataclasses.dataclass(frozen=True)
 class Board(catalogue.Design):
-    """A board: its top is boards/NAME.sv."""
+    """A board. Its top module is in boards/NAME.sv."""
 
     holds: str = ""  # the catalogue's design on the board
     device: catalogue.Fpga = catalogue.ECP5_LUT4S  # its wanted_mhz is the clock that the top derives from the oscillator
