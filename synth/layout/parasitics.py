@@ -67,7 +67,7 @@ def contacts(tech: pathlib.Path, layers: list[str]) -> dict[str, float]:
 
 
 def turned(rect: Rect, cell: tuple[float, float], at: tuple[float, float], how: str) -> Rect:
-    """Returns `rect`, a rectangle in a cell, after placement. `cell`: width and height of the cell; `at`: its corner; `how`: N, FN, S, FS."""
+    """Returns `rect`, a rectangle in a cell, after placement. `cell`: the cell's width, height; `at`: its corner; `how`: N, FN, S or FS."""
     width, height = cell
     left, right = (width - rect.right, width - rect.left) if how in ("FN", "S") else (rect.left, rect.right)
     low, high = (height - rect.top, height - rect.bottom) if how in ("FS", "S") else (rect.bottom, rect.top)

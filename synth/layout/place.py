@@ -173,7 +173,7 @@ def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], 
 
 
 def around(netlist: Netlist, cells: dict[str, tuple[int, int]], core: tuple[int, int]) -> dict[str, tuple[int, int]]:
-    """Returns places for the ports, at equal distances around the core, ordered by the angle of their nets' cells from the core's middle."""
+    """Returns places for the ports, at equal distances around the core, in order of the angles of their nets' cells around its middle."""
     width, height = core
     angles = {}
     for ends in netlist.nets().values():

@@ -9,7 +9,7 @@
 namespace raygate {
 namespace {
 
-// Every finite number of a format of 32 bits or less is a double.
+// Returns the number as a double, exactly: a double can represent every format of up to 32 bits.
 double to_double(FloatFormat format, std::uint32_t bits) {
   const int field = static_cast<int>(bits >> format.frac_bits) & format.max_field();
   const std::uint32_t fraction = bits & format.frac_mask();
@@ -20,7 +20,7 @@ double to_double(FloatFormat format, std::uint32_t bits) {
   return sign * std::ldexp(significand, exponent);
 }
 
-// Precision in MPFR: more than two significands of binary32, and still a machine word.
+// MPFR's precision in bits: more than two significands of binary32, and within a machine word.
 constexpr mpfr_prec_t kPrecision = 62;
 
 struct Scratch {

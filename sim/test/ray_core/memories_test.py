@@ -14,7 +14,7 @@ LIMIT = 2048
 
 
 def memories(top: str) -> dict:
-    """Returns the memories above LIMIT of a top and its submodules: by module and name, the bits and whether the read port has a clock."""
+    """Returns the memories of more than LIMIT bits in a top, by module and name: their bits, and whether their read ports have a clock."""
     with tempfile.TemporaryDirectory() as folder:
         netlist = pathlib.Path(folder) / "netlist.json"
         yosys.run(f"{yosys.read(cores.used(top, cores.files('ray_core')), top)}\n"

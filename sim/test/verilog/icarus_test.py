@@ -23,7 +23,7 @@ def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.
     netlist = out.with_suffix(".json")
     yosys.run(scripts.fpga(design, "ecp5", "", netlist), out.with_suffix(".map.log"))
     empty = " ".join(f"-unset INITVAL_{row:02X}" for row in range(64))
-    # Yosys writes its cell models out as it reads them: Icarus Verilog refuses their $error.
+    # Icarus Verilog rejects $error in Yosys's cell models, so Yosys reads the models and writes them without it.
     yosys.run(f"read_json {netlist}\nchtype -set block_ram t:DP16KD\nsetparam {empty} t:block_ram\n"
               f"delete =$paramod*\nread_verilog -overwrite +/ecp5/cells_sim.v\nhierarchy -top {top}\nproc\n"
               f"setattr -mod -unset lib_whitebox *\nwrite_verilog -noattr {out}", out.with_suffix(".log"))
