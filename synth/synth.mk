@@ -3,7 +3,7 @@ SYNTH_JOBS ?= 2
 
 .PHONY: synth prove fpga lecture layout
 
-# $(call options,NAMES): command-line options for those variables of NAMES that are set: --width='48' for WIDTH=48.
+# $(call options,...): command-line options for those of the listed variables that are set: --width='48' for WIDTH=48.
 options = $(foreach name,$(1),$(if $($(name)),--$(subst _,-,$(name))='$($(name))'))
 design_words = TOP ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT TARGETS PUBLISH
 

@@ -70,7 +70,7 @@ module exact_accumulator_sums #(
   initial sum = '0;
   always_ff @(posedge clk) sum <= first ? term : !opens ? sum + term : down ? above + term : over + term;
 
-  // bound: largest magnitude of the sum; most: largest magnitude of the incoming value; tail: see below
+  // Largest magnitudes. bound: of the sum; most: of the incoming value; tail: of the sum of one column's products
   localparam int unsigned SureBit = DigitWidth - 1 + $clog2(Products);
   logic [Wide-1:0] most, bound, tail;
   assign most  = was_down ? Wide'(1) << (SureBit + DigitWidth) : Wide'(Products) << (DigitWidth - 1);
@@ -84,8 +84,7 @@ module exact_accumulator_sums #(
       assert (terms != '0 && terms <= Products);
       assert (negative == sum[Wide-1] && zero == (sum == '0));
       assert (left[DigitWidth-1:0] == '0);
-      // With B = 2**DigitWidth, the k-th column below adds at most tail / B**k. All together add less than tail / (B -
-      // 1)
+      // With B = 2**DigitWidth, the k-th column below adds at most tail / B**k, all together less than tail / (B - 1)
       assert (!sure || $unsigned((size <<< DigitWidth) - size) >= tail);
     end
     cover (begun && sure && was_down);

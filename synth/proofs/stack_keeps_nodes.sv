@@ -131,8 +131,7 @@ module stack_keeps_nodes #(
     line_of = group[GroupWidth-1-:AddressWidth] + AddressWidth'(group[EntryWidth*n+CountWidth+:OffsetWidth]);
   endfunction
 
-  // ---- Assumptions about the user: no traversing ray starts again, only requested nodes arrive, near children come
-  // first
+  // ---- Assumptions about the user: no traversing ray starts again, only requested nodes come, near children first
 
   logic [Rays-1:0] wanted;  // per ray: a requested node has not arrived
 

@@ -248,7 +248,7 @@ class Machine {
     return {component(1, 2), component(2, 0), component(0, 1)};
   }
 
-  /// Returns the sign of the sum of terms. Adds columns from the highest down until the sign is known.
+  /// Returns the sign of the sum of terms. Adds columns from the highest until the sign is known.
   int sign(std::initializer_list<Term> terms) {
     const auto top = static_cast<int>(terms.begin()->x.size() + terms.begin()->y.size()) - 2;
     const Wide sure = Wide{1} << sure_bit_;

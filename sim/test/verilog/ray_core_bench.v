@@ -1,5 +1,5 @@
-// Simulates ray_core with four-state values, at power-up and after resets in mid-run. No valid output bit is unknown, and
-// rays have the right hits. Memory has two nodes and three triangles across the x axis. Every eighth ray meets an edge.
+// Simulates ray_core with four-state values, at power-up and after resets in mid-run. No valid output bit is unknown.
+// Rays have the right hits. Memory has two nodes and three triangles across the x axis. Every eighth ray meets an edge.
 module bench;
   parameter IdWidth = 5;  // bits of a line request's ID
   parameter Exact = 0;  // of dut

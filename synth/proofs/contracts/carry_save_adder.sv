@@ -1,5 +1,4 @@
-// Contract of a carry-save adder, proven in step 4: the outputs are any two words with the same sum as the three
-// inputs.
+// Contract of a carry-save adder, proven in step 4: the outputs are any two words with the sum of the three inputs.
 module carry_save_adder #(
   parameter int unsigned Width = 48
 ) (

@@ -89,8 +89,7 @@ module ray_contexts #(
 
 endmodule
 
-// Contract of a queue: only the highest bit of each word is kept. Proof unit.fifo shows that the real queue keeps
-// order.
+// Contract of a queue: keeps only the highest bit of each word. Proof unit.fifo shows that the real queue keeps order.
 module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 64,
