@@ -128,8 +128,8 @@ def refuses(name: str, clone: pathlib.Path, state: dict) -> bool:
 
 
 def try_faults(names: list[str]) -> int:
-    """Commits each guard's fault in a clone. The guard must refuse it at that commit; a guard with turns must also refuse it within
-    `turns` runs after the fault's commit, with no file touched. Returns 1 if a guard does not."""
+    """Commits each guard's fault in a clone. The guard must fail at this commit. A guard with turns must also fail within `turns` runs
+    after this commit, with no further file touched. Returns 1 if a guard does not fail."""
     clone = ROOT / "build/guards"
     if not clone.exists():
         subprocess.run(["git", "clone", "-q", ROOT, clone], check=True)

@@ -67,7 +67,7 @@ class Tree:
         return first
 
     def branch(self, start, along, length, radius, level):
-        """Adds a bent prism that becomes thinner, and the branches that begin on it."""
+        """Adds a bent prism that becomes thinner, and the branches that begin on this prism."""
         rng, parts = self.rng, 4 if level == 0 else 2
         below, at = self.ring(start, along, radius), start
         for part in range(parts):

@@ -18,7 +18,7 @@
 
 namespace raygate {
 
-/// Interface of an array, as RtlBurstUnit needs it.
+/// Interface of an array for RtlBurstUnit.
 class BurstModel {
  public:
   virtual ~BurstModel() = default;
@@ -153,7 +153,7 @@ class ArrayModel : public BurstModel {
 
   HitCounters counters() override {
     assert(in_flight_ == 0);
-    for (int i = 0; i < 3; ++i) clock();  // the counters are three clocks late
+    for (int i = 0; i < 3; ++i) clock();  // the counters have a latency of three clocks
     return {.tests = read(kTests),
             .misses = read(kMisses),
             .hits = read(kHits),
@@ -340,7 +340,7 @@ class ArrayModel : public BurstModel {
   std::vector<Model<Top>> models_;
   Numbers numbers_;
   std::vector<LaneInput> inputs_;  // one per lane
-  unsigned offered_ = 0;           // bit n: lane n has a test at its input that it has not taken
+  unsigned offered_ = 0;           // bit n: the test at lane n's input has not been taken yet
   unsigned quiet_ = 0;             // clocks since a test was taken, or a burst or a point ended
   Work works_[kMostBatches];
   unsigned oldest_ = 0, in_flight_ = 0;

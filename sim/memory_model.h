@@ -57,7 +57,7 @@ class MemoryModel {
   [[nodiscard]] bool valid() const { return !due_.empty() && due_.top().at <= now_; }
   [[nodiscard]] std::uint32_t number() const { return due_.top().line; }
   [[nodiscard]] bool is_error() const { return number() >= lines_.size(); }
-  /// Returns the line; zeros if it is an error.
+  /// Returns the line, or zeros if is_error().
   [[nodiscard]] MemoryLine line() const { return is_error() ? MemoryLine{} : lines_[number()]; }
   [[nodiscard]] std::uint64_t tag() const { return due_.top().tag; }
   void pop() { due_.pop(); }

@@ -10,8 +10,8 @@
 namespace raygate {
 
 /// Returns a context whose models start with zeros in all registers or, with
-/// RAYGATE_RANDOM_RESET=<seed> in the environment, with random bits, as hardware does. No result
-/// may depend on these initial values.
+/// RAYGATE_RANDOM_RESET=<seed> in the environment, with random bits, as in hardware. No result may
+/// depend on these initial values.
 inline std::unique_ptr<VerilatedContext> make_context() {
   auto context = std::make_unique<VerilatedContext>();
   if (const char* seed = std::getenv("RAYGATE_RANDOM_RESET")) {
@@ -56,8 +56,8 @@ class Model {
   /// Updates the outputs from the inputs. A combinational top needs no other call.
   void eval() { top_->eval(); }
 
-  /// One clock cycle: a rising edge with the inputs as they are, then the falling edge. The
-  /// outputs read afterwards are those between this rising edge and the next.
+  /// Simulates one clock cycle: a rising edge with the present inputs, then the falling edge. The
+  /// outputs read afterwards are those between this rising edge and the next one.
   ///
   /// At a falling edge the model only records that the clock is low. If the model's ___024root.h of
   /// Verilator 5.006 is included, the record is written directly and the evaluation is skipped.
@@ -72,14 +72,14 @@ class Model {
     }
   }
 
-  /// Half a clock cycle: the clock goes to `level`.
+  /// Simulates half a clock cycle: the clock changes to `level`.
   void edge(bool level) {
     top_->clk_i = level;
     top_->eval();
     clocks_ += level;
   }
 
-  /// Pulls the reset, which is asynchronous, low without a clock edge, and releases it.
+  /// Asserts and releases the asynchronous, active-low reset, without a clock edge.
   void reset() {
     top_->clk_i = 0;
     top_->rst_ni = 1;

@@ -67,7 +67,7 @@ void build(const ModelFile& file) {
   if (status != 0) fail(file, "building it failed (" + log + ")");
 }
 
-/// Opens a model's file; returns null if it is missing or incomplete.
+/// Opens a model's file. Returns null if the file is missing or incomplete.
 void* open_file(const ModelFile& file) {
   return ::dlopen((std::string(kModels) + file.name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
 }

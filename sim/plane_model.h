@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// Interface of a unit, as RtlPlaneUnit needs it.
+/// Interface of a unit for RtlPlaneUnit.
 class PlaneModel {
  public:
   virtual ~PlaneModel() = default;
@@ -48,7 +48,7 @@ class PlaneModelOf final : public PlaneModel {
   [[nodiscard]] std::uint64_t clocks() const override { return unit_.clocks(); }
 
  private:
-  /// Simulates one clock with `word` on the input bus; returns the output bus's word after it.
+  /// Simulates one clock with `word` on the input bus. Returns the word then on the output bus.
   float exchange(float word) {
     unit_->bus_i = numbers_.to_word(word);
     unit_.clock();

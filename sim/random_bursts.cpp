@@ -55,7 +55,7 @@ glm::vec3 RandomBursts::random_direction() {
   return direction;
 }
 
-/// Returns a triangle with corners around a random point of the ray, which may hit or miss it.
+/// Returns a triangle with corners around a random point of the ray. The ray may hit or miss it.
 PolygonRecord RandomBursts::triangle(const glm::vec3& direction) {
   const double size = std::exp2(uniform(-6.0, 3.0));
   const glm::dvec3 center = glm::dvec3(direction) * std::exp2(uniform(-4.0, 6.0));

@@ -1,4 +1,4 @@
-// Bursts of hit tests to compare pipelined units: typical ones and adversarial ones.
+// Bursts of hit tests to compare pipelined units: typical and adversarial bursts.
 #pragma once
 
 #include <random>
@@ -8,7 +8,7 @@
 
 namespace raygate {
 
-/// A batch with the records it points to.
+/// A batch, with the records to which its bundles point.
 struct BurstBatch {
   std::vector<PolygonRecord> records;
   std::vector<RayBundle> bundles;

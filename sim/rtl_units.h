@@ -47,7 +47,7 @@ class RtlBurstUnit : public BurstUnit {
   explicit RtlBurstUnit(std::unique_ptr<BurstModel> model);  ///< an array of another format
   ~RtlBurstUnit() override;
 
-  /// The tests of the second batch follow those of the first without a gap.
+  /// In the hardware, the tests of a second batch follow the first batch's tests without a gap.
   void start(std::span<const RayBundle> batch) override;
   void finish(BurstResults& results) override;
   [[nodiscard]] std::size_t enough_tests() const override { return enough_tests_; }

@@ -15,7 +15,7 @@ namespace raygate {
 template <class Top>
 class WaveModel : public Model<Top> {
  public:
-  /// Starts the file at `path`. Throws InputError if it cannot be written.
+  /// Starts the file at `path`. Throws InputError if the file cannot be written.
   void record(const std::string& path) {
     this->context().traceEverOn(true);
     this->context().timeunit(-9);

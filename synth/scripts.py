@@ -40,7 +40,7 @@ def structure_json(design: Design, out: pathlib.Path) -> str:
 
 
 def plain_verilog(design: Design, out: pathlib.Path) -> str:
-    """Returns commands that write a design and all that it instantiates as one file of plain Verilog."""
+    """Returns commands that write a design and all modules below it as one file of plain Verilog."""
     return f"{elaborated(design)}\nproc\nopt_expr\nopt_clean\nbwmuxmap\nwrite_verilog -noattr {out}"
 
 

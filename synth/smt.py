@@ -89,7 +89,7 @@ def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: 
 
 
 def version() -> str:
-    """Returns the version of Bitwuzla, or "" if it is not installed."""
+    """Returns the version of Bitwuzla, or "" if Bitwuzla is not installed."""
     try:
         return importlib.metadata.version("bitwuzla")
     except importlib.metadata.PackageNotFoundError:

@@ -43,7 +43,7 @@ def key(files: Iterable[pathlib.Path], *facts: object) -> str:
 
 
 def kept(folder: pathlib.Path, wanted: str) -> dict | None:
-    """Returns the result in `folder` if it was made under the key `wanted`, else None."""
+    """Returns the result in `folder` if the result was made under the key `wanted`, else None."""
     file = folder / "result.json"
     found = json.loads(file.read_text()) if file.exists() else {}
     return found["result"] if found.get("key") == wanted else None
@@ -59,7 +59,7 @@ def replace(file: pathlib.Path, text: str) -> None:
 
 
 def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple[dict, bool]:
-    """Returns the result in `folder` if it was made under the key `wanted`; else makes and keeps it.
+    """Returns the result in `folder` if the result was made under the key `wanted`; else makes and keeps a new result.
 
     Also returns whether the result was already there. Jobs that need the same result wait for the first of them.
     """

@@ -7,7 +7,7 @@ import pathlib
 import re
 import subprocess
 
-RESULTS = pathlib.Path(__file__).resolve().parent / "results"  # what PUBLISH=1 writes
+RESULTS = pathlib.Path(__file__).resolve().parent / "results"  # the folder that PUBLISH=1 writes
 
 
 def markdown(header: list[str], rows: list[list[object]]) -> str:

@@ -8,7 +8,7 @@
 
 namespace raygate {
 
-/// A batch of bursts with the records it points to, and the same tests for the paper's unit.
+/// A batch of bursts with the records to which they point, and the same tests for the paper's unit.
 struct TestStream {
   std::vector<PolygonRecord> records;
   std::vector<RayBundle> bundles;  ///< one ray each

@@ -1,7 +1,7 @@
 // The rules of AXI4-Lite at a subordinate's port: each channel's VALID and payload hold until READY. VALID is low in
 // reset. A write gets one response, after address and data were taken. A read gets one response, after its address.
 //
-// Inputs: also check the manager. Proofs set it to 0, because they assume nothing about the manager.
+// Inputs: also check the manager. Proofs set Inputs to 0, because they assume nothing about the manager.
 // Source: AMBA AXI protocol specification, issue E, A3.2, A3.3, B1.
 module axi_lite_checks #(
   parameter int unsigned AddressWidth = 12,

@@ -20,7 +20,7 @@ def untested(hardware: list[pathlib.Path], tops: set[str]) -> list[pathlib.Path]
 
 
 def main() -> int:
-    """Runs the check, and checks that it can fail. Returns 1 if a module has no test or the check is wrong."""
+    """Runs the check, and verifies that the check can fail. Returns 1 if a module has no test or the check is wrong."""
     hardware = sorted(file for file in ROOT.glob("hw/*/*.sv") if not file.stem.endswith("_pkg"))
     lists = [file.read_text() for file in (ROOT / "sim").glob("**/CMakeLists.txt")]
     tops = {word for text in lists for names in re.findall(r"(?:\bTOP|\bforeach\(\w+) ([\w ]+)", text) for word in names.split()} | {

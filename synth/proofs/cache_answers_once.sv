@@ -8,7 +8,7 @@ module cache_answers_once #(
   localparam int unsigned Lines = 16,
   localparam int unsigned Ways  = 8,
   localparam int unsigned Width = 2,
-  localparam int unsigned Depth = 16,  // of the queue of hits
+  localparam int unsigned Depth = 16,  // depth of the queue of hits
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned TagWidth = AddressWidth - 1
 ) (

@@ -1,7 +1,7 @@
 // Claims for any terms: The register of exact_accumulator is the exact sum of a column's terms and an incoming value,
 // and does not overflow. From low to high columns, the incoming value is the carry out of the column below. From high
-// to low columns, it is the sum of the column above times 2**DigitWidth. digit_o is the register modulo 2**DigitWidth,
-// as a signed number. If sure_o is set, the sum's magnitude exceeds the largest possible total of all columns below.
+// to low columns, the incoming value is the sum of the column above times 2**DigitWidth. digit_o is the register modulo
+// 2**DigitWidth, as a signed number. If sure_o is set, the sum's magnitude exceeds any total of all columns below.
 // opened_exact_accumulator is exact_accumulator with its register as an output.
 module exact_accumulator_sums #(
   parameter int unsigned DigitWidth = 48,

@@ -1,7 +1,8 @@
-// Claims for any constant inputs of exact_exponents: each nonzero coordinate and component of the direction is an
-// integer multiple of its unit. It fits in the given number of digits, and so does the difference of two. The unit is
-// the lowest exponent of these numbers, and one digit less is not enough. The shifted words `one` and `limit` fit, too.
-// Their shifts make D one < S limit equivalent to t = D / S < limit, in the units of coordinates and direction.
+// Claims for any constant inputs of exact_exponents: Nonzero coordinates are integer multiples of the coordinates'
+// unit, nonzero components of the direction of the direction's unit. These numbers, and differences of two of them, fit
+// in the given digits. A unit is the lowest exponent of its numbers; one digit less is not enough. `one` and `limit`
+// fit, too. Their shifts make D one < S limit equivalent to t = D / S < limit, in the units of coordinates and
+// direction.
 module exact_exponents_fit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,

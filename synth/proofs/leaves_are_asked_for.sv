@@ -85,7 +85,7 @@ module leaves_are_asked_for #(
       if (mask[n]) triangles_of = triangles_of + TotalWidth'(group[EntryWidth*n+:CountWidth]);
     end
   endfunction
-  // Whether leaves are in order, near ones first, and none in the mask is empty
+  // Returns whether leaves are in order, near leaves first, and no leaf in the mask is empty
   function automatic logic is_group(logic [GroupWidth-1:0] group, logic [Children-1:0] mask);
     is_group = 1'b1;
     for (int unsigned n = 0; n < Children; n++) begin

@@ -1,6 +1,6 @@
 // Claims about nearest_hit, for any tests: after any sure hit of a burst, the kept hit is not farther than this hit. A
-// burst has a nearest hit if and only if it had a sure hit. When a sure hit meets a kept hit, the one that is not kept
-// is reported if and only if their distances differ by at most the sum of their errors.
+// burst has a nearest hit if and only if the burst had a sure hit. When a sure hit follows a kept hit, the hit that is
+// not kept is reported if and only if the distances of both hits differ by at most the sum of their errors.
 module nearest_hit_keeps_nearest #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,

@@ -1,8 +1,9 @@
 // Claims, for any functions that the pipelined unit's float cores compute: V and U_k are sums (x + y) + z of the
-// products of the record's words and the direction's components. The verdict is that of hit_decision for V and U_k. t =
-// d / V. For a nearest hit, P_k = (d I_k) / V. The proof computes these words combinationally. It compares them, after
-// the unit's latency, with the words that enter nearest_hit, and with P. opened_hit_test_pipeline is the unit with
-// these words as outputs. pipeline_keeps_tags proves that tests enter nearest_hit once and in order, with their tags.
+// products of the record's words and the direction's components. The verdict is that of hit_decision for V and U_k.
+// Also, t = d / V, and for a nearest hit P_k = (d I_k) / V. The proof computes these words combinationally, and
+// compares them, after the unit's latency, with the words that enter nearest_hit, and with P. opened_hit_test_pipeline
+// is the unit with these words as outputs. pipeline_keeps_tags proves that tests enter nearest_hit once, in order, with
+// their tags.
 module pipeline_computes #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,

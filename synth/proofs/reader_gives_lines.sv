@@ -1,9 +1,8 @@
 // Claims, from reset on, for any memory that answers in any order, with interleaved beats and any errors: The core's
-// memory port obeys AXI4 (sim/checks/axi_read_checks). A read is requested at the address of its line. It returns one
-// line, with the read's id and the beats of its burst in order. The line has an error if a beat had an error, or if
+// memory port obeys AXI4 (sim/checks/axi_read_checks). A read is requested at the address of its line. The read returns
+// one line, with the read's id and the beats of its burst in order. The line has an error if a beat had an error, or if
 // RLAST was not set exactly in the last beat. There are never more lines than reads. Assumption: memory sends only
-// requested beats. opened_axi_read_manager is axi_read_manager for two IDs and two beats per line, with registers as
-// outputs.
+// requested beats. opened_axi_read_manager is axi_read_manager for two IDs, two beats per line, registers as outputs.
 module reader_gives_lines (
   input logic clk,
   input logic choose  // watch the read taken now

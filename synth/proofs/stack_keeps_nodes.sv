@@ -1,10 +1,10 @@
 // Claims, from reset on, for any results of box_unit: A pushed node is requested once, by the line number in its group.
-// Exception: when the ray's stack is examined, the node is dropped if it is beyond the ray's t_max, or if the ray has
-// ended or has met a node twice. The ray is `traversing` until its nodes are requested or dropped. A group is pushed
+// Exception: when the ray's stack is examined, nodes beyond the ray's t_max are dropped, and all nodes of a ray that
+// has ended or has met a node twice. A ray is `traversing` until its nodes are requested or dropped. A group is pushed
 // only if there is room, on the ray's own stack or on the shared stack. One ray at a time owns the shared stack, for as
-// long as it needs room there. A ray that is refused the shared stack waits until its owner, a traversing ray, releases
-// it. opened_traversal is traversal of two rays, each with room for two groups, and two in the shared stack. Its state
-// is at its outputs.
+// long as this ray needs room there. Another ray that needs the shared stack waits until the owner, a traversing ray,
+// releases the stack. opened_traversal is traversal of two rays, with room for two groups each and for two groups in
+// the shared stack, and with its state as outputs.
 module stack_keeps_nodes #(
   localparam int unsigned Rays  = 2,
   localparam int unsigned Depth = 2,

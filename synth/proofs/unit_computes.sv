@@ -16,7 +16,7 @@ module unit_computes #(
   logic ready, output_valid;
   logic [Width-1:0] out;
 
-  hit_test_unit dut (  // in any state in which a test is offered and taken
+  hit_test_unit dut (  // initially in any state in which a test is offered and taken
     .clk_i(clk),
     .rst_ni(1'b1),
     .valid_i(valid),

@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr std::array kWidths = {2, 3, 4, 5, 6, 7, 8, 9, 11, 16, 23, 32};  // of multipliers_top.sv
+constexpr std::array kWidths = {2, 3, 4, 5, 6, 7, 8, 9, 11, 16, 23, 32};  // as in the top
 
 class MultipliersTest : public testing::Test {
  protected:

@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr int kClocksPerBit = 5;  // of the model
+constexpr int kClocksPerBit = 5;  // as in uart_pair.sv
 
 class UartTest : public testing::Test {
  protected:

@@ -38,7 +38,7 @@ TEST_F(CommonDeathTest, PopOfAnEmptyFifoStopsTheSimulation) {
   EXPECT_DEATH(run(false, true, 1), "a_no_underflow");
 }
 
-// Registers start with the random bits of RAYGATE_RANDOM_RESET, or, without it, with zeros.
+// Registers start with random bits from seed RAYGATE_RANDOM_RESET, or with zeros if that is unset.
 TEST(RandomResetTest, RegistersWithoutResetStartAsTheSeedSays) {
   const auto contents = [](const char* seed) {
     if (seed != nullptr) {

@@ -59,7 +59,7 @@ ExactValue exact_result(FloatFormat format, FloatOp op, std::uint32_t a, std::ui
       ternary = mpfr_div(mp.result, mp.a, mp.b, MPFR_RNDZ);
       break;
   }
-  if (mpfr_nan_p(mp.result)) {  // though no operand is a NaN
+  if (mpfr_nan_p(mp.result)) {  // an invalid operation: no operand is a NaN
     out.kind = ExactValue::Kind::kNan;
     out.flags |= kInvalid;
     return out;
@@ -137,7 +137,7 @@ FloatResult round_exact(FloatFormat format, const ExactValue& value, RoundingMod
   const int lead =
       value.exponent + static_cast<int>(std::bit_width(value.significand)) - 1;  // floor(log2)
   const int min_exponent = 1 - format.bias();
-  const int free_quantum = lead - format.frac_bits;  // of a format with unbounded exponents
+  const int free_quantum = lead - format.frac_bits;  // quantum if exponents were unbounded
   const int min_quantum = min_exponent - format.frac_bits;
   const int quantum = free_quantum > min_quantum ? free_quantum : min_quantum;
 

@@ -234,7 +234,7 @@ class AxiBench : public testing::Test {
   std::mt19937 random_{kSeed};
   Model<Top> model_;
   std::deque<Beat> beats_;
-  std::size_t bursts_ = 0, answered_ = 0, unanswered_ = 0;  // of results written to memory
+  std::size_t bursts_ = 0, answered_ = 0, unanswered_ = 0;  // numbers of bursts with results
   std::vector<std::uint32_t> written_;
   std::vector<CoreResult> results_;
   std::map<std::uint32_t, CoreResult> ends_;  // by pixel

@@ -28,7 +28,7 @@ namespace {
 constexpr std::uint32_t kSeed = 20261123;
 constexpr std::uint64_t kResults = 0xFEDC'BA98'7654'3FC0;
 constexpr std::uint32_t kUsers = 0x8000'0000;       // bit in the tags of the user's own rays
-constexpr std::uint32_t kCapability = 0x7013'0401;  // of 16 rays and 64-bit data: registers.md
+constexpr std::uint32_t kCapability = 0x7013'0401;  // for 16 rays and 64-bit data: registers.md
 constexpr glm::vec3 kEye{0.25f, 0.3f, 2.5f};
 
 class AxiTrafficTest : public testing::Test {

@@ -68,7 +68,7 @@ TEST_F(RayCoreTest, NearestHitsAreTheCpuIntersectors) {
 }
 
 TEST_F(RayCoreTest, ANodeAndATriangleAreTakenInEachOfTheirTurns) {
-  constexpr std::uint64_t kClocks = 11;  // of Vray_core_shared
+  constexpr std::uint64_t kClocks = 11;  // parameter Clocks of Vray_core_shared
   check(some_rays(bodies(), random_, 3'000), {},
         std::make_unique<CoreModel<Vray_core_shared>>(MemoryTiming{}));
   const std::uint64_t turns = std::max(counters_.nodes, counters_.tests);
@@ -451,7 +451,7 @@ std::vector<MemoryLine> chain(std::uint32_t nodes) {
   return lines;
 }
 
-/// Rays that all need the shared stack get it one after the other.
+/// Rays that all need the shared stack use the stack one after the other.
 TEST_F(RayCoreTest, TreesAreAsDeepAsTheImagesOrAnError) {
   std::vector<CoreRay> rays;
   for (std::uint32_t n = 0; n < 100; ++n) {

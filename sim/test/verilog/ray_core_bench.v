@@ -2,7 +2,7 @@
 // Rays have the right hits. Memory has two nodes and three triangles across the x axis. Every eighth ray meets an edge.
 module bench;
   parameter IdWidth = 5;  // bits of a line request's ID
-  parameter Exact = 0;  // of dut
+  parameter Exact = 0;  // parameter Exact of dut
   reg clk = 0, reset_n = 0, ray = 0, result_ready = 0, read_ready = 0, line_valid = 0;
   reg [95:0] origin = 0;
   reg [31:0] skip = 0, source = 0, tag = 0;

@@ -7,8 +7,8 @@
 (declare-const w Int)
 (declare-const digit Int)
 
-; Every row preserves 2 x p = D d + w. (The first row makes it true: p = 1 and w = 2 x - D d.) A row
-; replaces p by 4 p, D by 4 D + digit, and w by 4 w - digit d.
+; Every row preserves 2 x p = D d + w. (After the first row, p = 1 and w = 2 x - D d.) A row replaces
+; p by 4 p, D by 4 D + digit, and w by 4 w - digit d.
 (push)
 (assert (= (* 2 x p) (+ (* D d) w)))
 (assert (not (= (* 2 x (* 4 p)) (+ (* (+ (* 4 D) digit) d) (- (* 4 w) (* digit d))))))
@@ -25,7 +25,7 @@
 (check-sat)
 (pop)
 
-; The quotient is in (p, 4 p) if the significands are in [f, 2 f), so two integer bits hold it.
+; The quotient is in (p, 4 p) if the significands are in [f, 2 f), so two integer bits are enough.
 (push)
 (declare-const f Int)
 (assert (and (> f 0) (<= f x) (< x (* 2 f)) (<= f d) (< d (* 2 f)) (> p 0)))
