@@ -1,25 +1,25 @@
-# A thin front: CMake does the work, in build/. `make` alone lists the targets. Every target installs
-# what it needs (.ci/setup) and works on its own, in any order.
+# A front end of CMake, which builds in build/. `make` alone lists the targets. Every target installs
+# the packages it needs (.ci/setup). Targets can be made in any order.
 
-# An empty value on the command line (`make synth TOP=`) counts as not given, for every target.
+# For every target, an empty value on the command line (`make synth TOP=`) counts as not given.
 given := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(name))),$(name)))
 $(foreach name,$(given),$(if $($(name)),,$(eval override undefine $(name))))
 
 JOBS ?= $(shell nproc)
 SCENE ?= scenes/cornell.obj
-# `make SETUP=true ...` leaves the machine's packages alone.
+# `make SETUP=true ...` installs no packages.
 SETUP ?= .ci/setup
-# With the packages that $(SETUP) puts beside it.
+# The Python with the packages that $(SETUP) installs.
 PYTHON := build/venv/bin/python3
 
-# Configured each time, in a third of a second: a library that was missing then may be here now.
-# VARIANTS: of another table than host/variants/variants.json (`make variant`).
+# CMake configures before every build (0.3 s), to find libraries installed since the last build.
+# VARIANTS: file of a table of variants other than host/variants/variants.json (`make variant`).
 configure = cmake -S . -B build -G Ninja --log-level=WARNING \
   -DRAYGATE_VARIANTS=$(VARIANTS) -DRAYGATE_SIMULATION=ON
-# $(call alone,FILE,WHO): runs the command that follows when no other make holds the lock FILE, and says that it waits for WHO.
+# $(call alone,FILE,WHO): runs the following command when no other make holds the lock FILE; if it must wait, prints WHO.
 alone = mkdir -p build; flock -n $(1) true || echo 'Waiting for $(2) in this folder to finish' >&2; flock -o $(1)
-# $(call build,KIND,TARGETS): sets up and builds these programs. One make at a time, as another one may configure build/
-# otherwise, with another table of variants for example.
+# $(call build,KIND,TARGETS): installs packages and builds these programs. Only one make at a time may build, because
+# another make may configure build/ differently, for example with another table of variants.
 define build
 @$(SETUP) $(1)
 @$(call alone,build/lock,another build) sh -c '$(configure) >/dev/null && cmake --build build -j $(JOBS) --target $(2)'
@@ -49,19 +49,19 @@ page: ## use: the paper's unit in one file for a browser: its registers, clock b
 #   exact     a million tests of the exact unit
 #   page      the web page of sim/page, in a browser
 #   traffic   random traffic on the core's AXI ports (EPOCHS=3000)
-#   kills     renders that are killed and go on (KILLS=100)
+#   kills     renders that are killed and resumed (KILLS=100)
 #   faults    each allocation, write, sync and rename failing in turn
-#   guards    a fault under each guard of .ci/guards.toml, in a clone (GUARDS='mutation pip')
+#   guards    shows that each guard of .ci/guards.toml refuses a fault, in a clone (GUARDS='mutation pip')
 #   commands  every command of the README and the tutorials, in a clone with nothing built
 #   image     the image of Dockerfile, from a base that debootstrap makes
 #   damage    damaged copies of files of every format (COUNT=300 SEED=1)
 #   error     the intervals of --error (SEEDS=1000)
-#   trimesh   tests of trimesh, with our intersector
-#   binary64  wrong answers and time beside libigl and Embree, on models in binary64
+#   trimesh   tests of trimesh, with this project's intersector
+#   binary64  wrong hits and time, compared with libigl and Embree, on models in binary64
 #   cocotb    the core's AXI ports, driven by cocotb
 #   fuzz      libFuzzer on the readers and exact arithmetic (FUZZ_SECONDS=60, or FUZZ_FILES=5000)
-#   mutate    single faults in the hardware that test vectors catch (COUNT=1000 of each module)
-#   gallery   the pictures of scenes/gallery, rendered again: `git diff` shows what has changed
+#   mutate    how many single faults in the hardware the tests catch (COUNT=1000 of each module)
+#   gallery   the pictures of scenes/gallery, rendered again: `git diff` shows changes
 LONG_RUNS := unit exact page traffic kills faults guards commands image damage error trimesh binary64 cocotb fuzz mutate gallery
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
@@ -133,7 +133,7 @@ else
 endif
 
 
-# The first build of a folder is faster with several sources at once; for later changes: `make everything UNITY=0`.
+# The first build of a folder compiles several sources at once, which is faster. For incremental builds: `make everything UNITY=0`.
 ifeq ($(wildcard build/CMakeCache.txt),)
 UNITY ?= 1
 endif
@@ -151,8 +151,8 @@ everything:
 include synth/synth.mk
 include host/lab/lab.mk
 
-# A variable of the command line that no target to make reads is misspelt or meant for another target. A target reads variables named in its
-# paragraph here and in its macros' paragraphs; CMake reads some from the environment.
+# Refuses variables on the command line that no requested target reads: they are misspelt or meant for another target. A target reads the
+# variables named in its paragraph of this file and in the paragraphs of its macros. CMake reads some from the environment.
 define words
 { text[NR] = $$0 }
 END {

@@ -1,8 +1,8 @@
-# Names all missing Debian packages of the compiler and of libraries at once, instead of one by one as each is looked for.
-# Runs before CMake looks for a compiler, which would fail with another message.
+# Reports all missing Debian packages (compiler and libraries) at once, instead of stopping at the first one.
+# Runs before CMake looks for a compiler, because CMake's own message would not name the packages.
 include(CheckLanguage)
 set(missing)
-# scikit-build-core asks for g++. CMake would take c++, which ccache holds for another compiler although it is the same file.
+# scikit-build-core sets CXX=g++; CMake's default is c++. Both are the same file, but ccache treats them as two compilers.
 if(RAYGATE_PYTHON AND "$ENV{CXX}" STREQUAL "g++")
   foreach(name c++ g++)
     find_program(raygate_${name} ${name})

@@ -36,7 +36,7 @@ def git(*words: str) -> str:
 
 
 def last_passed() -> dict:
-    """Returns the commit that last passed on this machine and the number of runs before it; without a known one, None."""
+    """Returns the commit that last passed on this machine (None if unknown) and the number of runs before this run."""
     state = json.loads(STATE.read_text()) if STATE.exists() else {}
     known = state and subprocess.run(["git", "cat-file", "-e", f"{state['commit']}^{{commit}}"], cwd=ROOT,
                                      capture_output=True, check=False).returncode == 0
@@ -56,13 +56,13 @@ def is_touched(guard: dict, files: list[str]) -> bool:
 
 
 def room(file: str) -> str:
-    """host/light/lights.h and host/CMakeFiles/raygate_light.dir/Unity/unity_0_cxx.cxx -> host/light; sim/model.h -> sim."""
+    """Returns a file's room: host/light for host/light/lights.h and host/CMakeFiles/raygate_light.dir/..., sim for sim/model.h."""
     parts = re.sub(r"^host/CMakeFiles/raygate_(\w+)\.dir", r"host/\1", file).split("/")
     return "/".join(parts[:2]) if parts[0] == "host" else parts[0]
 
 
 class Plan:
-    """Selects what runs, from the changed files and the number of runs before this one."""
+    """Selects the guards and cases that run, by the changed files and the number of runs before this run."""
 
     def __init__(self, files: list[str], runs: int) -> None:
         self.files = files
@@ -72,12 +72,12 @@ class Plan:
         return "turns" not in TABLE[name] or is_touched({"files": [*SET_UP, *TABLE[name]["files"]]}, self.files)
 
     def has_turn(self, name: str, case: str) -> bool:
-        """Returns whether a case has its turn in this run."""
+        """Returns whether it is the case's turn in this run: every case has one turn in `turns` consecutive runs."""
         turns = TABLE[name]["turns"]
         return int(hashlib.sha256(case.encode()).hexdigest(), 16) % turns == self.runs % turns
 
     def cases(self, name: str, cases: list[str]) -> list[str]:
-        """Returns the cases that run."""
+        """Returns those of `cases` that run."""
         if any(file.startswith(SET_UP) for file in self.files):
             return cases
         guard, touched = TABLE[name], {room(file) for file in self.files}
@@ -89,7 +89,7 @@ class Plan:
         return cases if self.runs_in_full(name) else [case for case in cases if self.has_turn(name, case)]
 
     def skipped(self, tests: list[str]) -> list[str]:
-        """Returns ctest's tests that do not run."""
+        """Returns those of ctest's `tests` that do not run."""
         skipped = []
         for name, guard in TABLE.items():
             if "tests" in guard:
@@ -128,8 +128,8 @@ def refuses(name: str, clone: pathlib.Path, state: dict) -> bool:
 
 
 def try_faults(names: list[str]) -> int:
-    """Commits each guard's fault in a clone. The guard must refuse it at that commit; a guard with turns must also refuse it within
-    `turns` runs after the fault's commit, with no file touched. Returns 1 if a guard does not."""
+    """Commits each guard's fault in a clone. The guard must fail at this commit. A guard with turns must also fail within `turns` runs
+    after this commit, with no further file touched. Returns 1 if a guard does not fail."""
     clone = ROOT / "build/guards"
     if not clone.exists():
         subprocess.run(["git", "clone", "-q", ROOT, clone], check=True)

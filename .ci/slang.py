@@ -1,4 +1,4 @@
-"""`slang.py FILE ...`: slang elaborates every module in these files as a top. Exits 1 for any complaint."""
+"""`slang.py FILE ...`: elaborates every module in these files as a top, with slang. Exits 1 for any warning or error."""
 
 import pathlib
 import re
@@ -10,7 +10,7 @@ tops = [word for name in sys.argv[1:]
         for word in re.findall(r"^module (\w+)", pathlib.Path(name).read_text(), re.M)]
 driver = Driver()
 driver.addStandardArgs()
-# A cast that is useless with one parameter is needed with another.
+# -Wno-useless-cast: a cast that is useless with one parameter may be needed with another.
 words = ["slang", "-Wextra", "-Werror", "-Wno-useless-cast", "-DSYNTHESIS", *sys.argv[1:]]
 words += [word for top in tops for word in ("--top", top)]
 good = (tops and driver.parseCommandLine(" ".join(words)) and driver.processOptions()

@@ -3,9 +3,8 @@
 
   blender room.blend --background --python scenes/blender_camera.py -- room.obj
 
-writes room.json beside room.obj. (A glTF file has its camera in it, if Cameras was ticked.) --up z is for files
-exported with Z Up, as PLY and STL are by default; OBJ files have y upwards by default. scenes/CONVENTIONS.md says
-what is converted."""
+writes room.json beside room.obj. (A glTF file contains its camera, if Cameras was ticked.) --up z is for files exported with
+Z Up, the default for PLY and STL. OBJ files have Y Up by default. scenes/CONVENTIONS.md lists the conversions."""
 import argparse
 import json
 import math
@@ -14,9 +13,9 @@ import sys
 
 
 def vertical_fov(lens: float, sensor: tuple[float, float], fit: str, size: tuple[float, float]) -> float:
-    """Returns the vertical field of view in degrees, for a picture of `size` (width and height, times the pixel
-    aspect) and a focal length `lens` and sensor width and height in one unit. `fit` is Blender's Sensor Fit: AUTO
-    (the sensor's width is the picture's longer side), HORIZONTAL or VERTICAL."""
+    """Returns the vertical field of view in degrees. `lens`, `sensor`: focal length; sensor width and height, in the same unit.
+    `fit`: Blender's Sensor Fit, AUTO (the sensor's width is the picture's longer side), HORIZONTAL or VERTICAL.
+    `size`: width and height of the picture, times the pixel aspect."""
     width, height = size
     is_across = fit == "HORIZONTAL" or (fit == "AUTO" and width >= height)
     sensor_side = sensor[1] if fit == "VERTICAL" else sensor[0]
@@ -25,14 +24,14 @@ def vertical_fov(lens: float, sensor: tuple[float, float], fit: str, size: tuple
 
 
 def axes_of_file(vector: tuple[float, float, float], up: str) -> list[float]:
-    """Converts a vector of Blender's (z up) to a file's axes: exported with Y Up and -Z Forward (up "y"), or unchanged ("z")."""
+    """Converts a vector from Blender's axes (z up) to the file's axes. `up`: "y" if exported with Y Up and -Z Forward, "z" if unchanged."""
     x, y, z = vector
     return [x, z, -y] if up == "y" else [x, y, z]
 
 
 def camera_setting(world: list[list[float]], fov: float, up: str) -> dict:
-    """Returns the key `camera` of a scene file. `world` has the rows of the matrix from camera to world coordinates:
-    the camera looks along its -z, with +y upwards in the picture."""
+    """Returns the value of key `camera` of a scene file. `world`: the rows of the matrix from camera to world coordinates. In camera
+    coordinates, the camera looks along -z, and +y is upwards in the picture."""
     right, upwards, back, eye = ([row[column] for row in world[:3]] for column in range(4))
     del right
     length = math.sqrt(sum(x * x for x in back))
@@ -42,7 +41,7 @@ def camera_setting(world: list[list[float]], fov: float, up: str) -> dict:
 
 
 def main(words: list[str]) -> None:
-    import bpy  # Blender's own Python has it
+    import bpy  # only Blender's own Python has this module
 
     parser = argparse.ArgumentParser(prog="blender_camera.py", description=__doc__.splitlines()[0])
     parser.add_argument("scene", type=pathlib.Path, help="the exported file; the JSON is written beside it")

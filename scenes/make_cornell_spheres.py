@@ -23,7 +23,7 @@ d 0.05
 illum 7
 """
 
-# Name and material, centre, radius; in millimetres, a hair above the floor.
+# Name, material, centre and radius, in millimetres. The spheres are slightly above the floor.
 SPHERES = [("mirror_sphere", "mirror", (380, 90.01, 180), 90),
            ("glass_sphere", "glass", (176, 90.01, 370), 90)]
 

@@ -2,8 +2,8 @@
 """Writes a forest: one tree as OBJ and MTL, hilly ground, and a scene file with the tree's places.
 
 OUTPUT.obj is the ground, OUTPUT_tree.obj the tree, OUTPUT.json the scene: by default 10,000
-instances of 100,000 triangles. A tree's branches are prisms that fork at random; leaves of two
-triangles each make up the rest of its triangles.
+instances of 100,000 triangles. A tree's branches are prisms that fork at random. All other
+triangles of the tree are leaves of two triangles each.
 """
 import argparse
 import json
@@ -27,7 +27,7 @@ newmtl leaf
 Kd 0.2 0.42 0.08
 illum 1
 """
-SIDES = 6  # of a branch
+SIDES = 6  # number of sides of a branch
 SPACE = 7.0  # metres from tree to tree
 
 
@@ -45,7 +45,7 @@ def cross(a, b):
 
 
 def frame(along):
-    """Returns two unit vectors across `along`, which is a unit vector."""
+    """Returns two unit vectors perpendicular to the unit vector `along` and to each other."""
     across = unit(cross(along, [1, 0, 0] if abs(along[0]) < 0.7 else [0, 0, 1]))
     return across, cross(along, across)
 
@@ -67,7 +67,7 @@ class Tree:
         return first
 
     def branch(self, start, along, length, radius, level):
-        """Adds a bent prism that becomes thinner, and the branches that begin on it."""
+        """Adds a bent prism that becomes thinner, and the branches that begin on this prism."""
         rng, parts = self.rng, 4 if level == 0 else 2
         below, at = self.ring(start, along, radius), start
         for part in range(parts):
@@ -156,7 +156,7 @@ def write_ground(path, side, cells):
 
 
 def places(count, rng):
-    """Yields matrices by rows: trees turned, a little stretched and leaning, on a randomly disturbed grid."""
+    """Yields the trees' matrices, by rows. Trees are turned, slightly stretched and leaning, on a randomly disturbed grid."""
     side = math.ceil(math.sqrt(count))
     for i in range(count):
         x = SPACE * (i % side - 0.5 * (side - 1) + rng.uniform(-0.4, 0.4))

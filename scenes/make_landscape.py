@@ -2,8 +2,8 @@
 """Writes a landscape as OBJ and MTL: a square of hills, two triangles to each cell of a grid.
 
 Heights are sums of octaves of value noise: random numbers at the corners of a lattice, interpolated
-smoothly. Each octave has half the wavelength and half the height of the one before. The default of
-448 cells per side makes 401,408 triangles.
+smoothly. Each octave has half the wavelength and half the height of the octave before. The default
+of 448 cells per side makes 401,408 triangles.
 """
 import argparse
 import pathlib
@@ -34,7 +34,7 @@ def octave(cells, waves, rng):
 
 
 def landscape(cells, seed):
-    """Returns rows of heights, for a grid whose side is 1."""
+    """Returns rows of heights, for a grid of side 1."""
     rng = random.Random(seed)
     heights = [[0.0] * (cells + 1) for _ in range(cells + 1)]
     waves, height = 4, 0.08

@@ -22,12 +22,12 @@ Kd 0.68 0.36 0.22
 illum 1
 """
 COLOURS = ("3 2.2 1.2", "3 1 0.5", "1 2.2 1.1", "0.8 1.4 3")
-HALF = 10.0  # of the courtyard's side
-RADIUS = 0.07  # of a lantern
+HALF = 10.0  # half the length of the courtyard's side
+RADIUS = 0.07  # radius of a lantern
 
 
 def write_lantern(file, first, centre, colour):
-    """Writes an octahedron; returns the number of the next vertex."""
+    """Writes an octahedron. Returns the number of the next vertex."""
     file.write(f"o lantern{first}\nusemtl lantern{colour}\n")
     for axis in range(3):
         for sign in (1, -1):
@@ -41,7 +41,7 @@ def write_lantern(file, first, centre, colour):
 
 
 def places(strings, lanterns):
-    """Yields each lantern's string and centre. Strings sag from wall to wall, every second one across the others."""
+    """Yields string and centre of each lantern. Strings sag between opposite walls; every second string is perpendicular to the others."""
     for string in range(strings):
         aside = HALF * (2 * (string + 0.5) / strings - 1)
         for i in range(lanterns):

@@ -9,7 +9,7 @@ import making
 from make_sphere import icosphere, unit, write_faces, write_normals, write_vertices
 
 COLUMNS = 5
-KINDS = {  # Kd, Pm, more statements
+KINDS = {  # Kd, Pm, further MTL statements
     "metal": ("0.95 0.64 0.34", 1.0, ""),
     "plastic": ("0.12 0.35 0.6", 0.0, ""),
     "glass": ("0.93 0.98 0.95", 0.0, "Ni 1.5\nillum 7\n"),
@@ -46,7 +46,7 @@ def write_scene(output):
 
 
 def sky(direction):
-    """Returns the radiance from a direction: the glow of a low sun, a sky that is warm at the horizon, dark ground."""
+    """Returns the radiance from a direction: glow of a low sun, sky with a warm horizon, dark ground."""
     _, height, _ = direction
     if height < 0:
         return (0.1, 0.09, 0.08)
@@ -58,7 +58,7 @@ def sky(direction):
 
 
 def rgbe(colour):
-    """Returns four bytes: three mantissas and their common exponent (Ward, 1991)."""
+    """Encodes a colour in four bytes: three mantissas and a common exponent (Ward, 1991)."""
     exponent = math.frexp(max(colour))[1]
     scale = math.ldexp(256.0, -exponent)
     return bytes([min(255, int(x * scale)) for x in colour] + [exponent + 128])

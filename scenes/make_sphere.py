@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes a closed sphere as OBJ: an icosahedron whose triangles are cut in four, again and again.
 
-Vertices are shared, so the mesh is watertight; 20 * 4**fineness triangles.
+Vertices are shared, so the mesh is watertight. It has 20 * 4**fineness triangles.
 """
 import argparse
 import math
@@ -10,7 +10,7 @@ import making
 
 
 def icosphere(fineness):
-    """Returns the sphere's vertices (unit vectors) and its triangles: vertex indices from 0, counter-clockwise."""
+    """Returns the vertices of the unit sphere, and its triangles as vertex indices from 0, counter-clockwise from outside."""
     golden = (1 + math.sqrt(5)) / 2
     # The corners of three golden rectangles.
     vertices = []
@@ -62,13 +62,13 @@ def write_vertices(file, vertices, centre, radius):
 
 
 def write_faces(file, triangles, first):
-    """Writes the faces of a sphere whose first vertex has number `first`; its normals begin at 1."""
+    """Writes the faces of a sphere. `first`: number of its first vertex. The number of its first normal is 1."""
     for i, j, k in triangles:
         file.write(f"f {first + i}//{i + 1} {first + j}//{j + 1} {first + k}//{k + 1}\n")
 
 
 def write_normals(file, vertices):
-    """Writes the vertices of the unit sphere, which are the normals of every sphere in the file."""
+    """Writes the vertices of the unit sphere as normals, for all spheres in the file."""
     for v in vertices:
         file.write("vn %.6f %.6f %.6f\n" % v)
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes a sphereflake as OBJ and MTL: a sphere that carries nine of a third its size, and so on.
 
-The idea is Eric Haines's ("A Proposal for Standard Graphics Environments", 1987). The default depth gives 820 spheres of 320 triangles
-above a floor: 262,402 triangles.
+After Eric Haines, "A Proposal for Standard Graphics Environments", 1987. The default depth gives 820 spheres of 320 triangles
+above a floor of 2: 262,402 triangles.
 """
 import argparse
 import math
@@ -41,15 +41,15 @@ illum 1
 
 
 def spheres_of(centre, radius, axis, depth, generation=0):
-    """Yields (centre, radius, generation) of a sphere and of all spheres that it carries."""
+    """Yields (centre, radius, generation) of a sphere and of all spheres attached to it, directly or indirectly."""
     yield centre, radius, generation
     if generation == depth:
         return
-    # u and v: two unit vectors across the axis.
+    # u and v: two unit vectors perpendicular to the axis.
     across = min(range(3), key=lambda i: abs(axis[i]))
     u = unit(cross(axis, tuple(float(i == across) for i in range(3))))
     v = cross(axis, u)
-    # Six around the waist, and three above, at the angle between a cube's edges and its diagonal.
+    # Six spheres around the equator, and three above, raised so that they are at the angle between a cube's edges and its diagonal.
     places = [(0.0, (k + 0.25) / 6) for k in range(6)]
     places += [(math.asin(math.sqrt(2 / 3)), (k + 0.375) / 3) for k in range(3)]
     for raised, turned in places:

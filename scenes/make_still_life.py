@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes a still life as OBJ, MTL and PNG: a globe, a glass and a mirror sphere on a tiled floor.
 
-The textures are drawn here: tiles for the floor, a map of made-up continents for the globe.
+The script also draws the textures: tiles for the floor, and a map of invented continents for the globe.
 """
 import argparse
 import math
@@ -44,7 +44,7 @@ illum 3
 
 
 def write_png(path, width, height, color_at):
-    """Writes 24-bit RGB; color_at(x, y) returns three codes from 0 to 255."""
+    """Writes a PNG file with 24-bit RGB. color_at(x, y) returns three codes from 0 to 255."""
     def chunk(kind, data):
         return (struct.pack(">I", len(data)) + kind + data
                 + struct.pack(">I", zlib.crc32(kind + data)))
@@ -56,14 +56,14 @@ def write_png(path, width, height, color_at):
 
 
 def tile_at(x, y):
-    """Returns the colour of four tiles, dark and light, with joints between them."""
+    """Returns the colour of a texture of four tiles, dark and light, with joints."""
     if x % 32 == 0 or y % 32 == 0:
         return 70, 66, 60
     return (196, 186, 168) if (x // 32 + y // 32) % 2 else (98, 84, 76)
 
 
 def globe_at(x, y):
-    """Returns the colour of a map: land where a few waves around the sphere add up, a grid of degrees, white poles."""
+    """Returns the colour of the globe's map: land where a sum of waves is high, a grid of degrees, white poles."""
     longitude, latitude = 2 * math.pi * (x + 0.5) / 512, math.pi * (0.5 - (y + 0.5) / 256)
     if abs(latitude) > 1.25:
         return 235, 240, 245
@@ -109,8 +109,8 @@ def main():
 
 
 def write_globe(file, vertices, triangles, first, first_uv):
-    """Writes faces with longitude and latitude as texture coordinates, separate for each face because of
-    the seam where longitudes wrap around. Returns the next coordinates' number."""
+    """Writes faces with longitude and latitude as texture coordinates. Each face has coordinates of its own, because of the seam where
+    longitudes wrap around. Returns the number of the next texture coordinates."""
     axis = unit((0.3, 1.0, 0.1))
     east = unit((axis[1], -axis[0], 0.0))
     north = (axis[1] * east[2] - axis[2] * east[1], axis[2] * east[0] - axis[0] * east[2],

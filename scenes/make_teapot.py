@@ -11,9 +11,9 @@ import math
 
 import making
 
-# The round parts: four rows of (radius, height) for a ring of four patches. The control points of a
-# row in a quadrant are (r, 0), (r, q), (q, r), (0, r), with q = 0.56 r, or a third number: in the
-# knob Newell had 0.45 for 0.448.
+# The round parts: rings of four patches, each with four rows of (radius r, height). The control points
+# of a row in a quadrant are (r, 0), (r, q), (q, r), (0, r), with q = 0.56 r, or the row's third number:
+# Newell's knob has 0.45 instead of 0.448.
 ROUND_PARTS = {
     "rim": [(1.4, 2.4), (1.3375, 2.53125), (1.4375, 2.53125), (1.5, 2.4)],
     "body": [(1.5, 2.4), (1.75, 1.875), (2.0, 1.35), (2.0, 0.9)],
@@ -23,8 +23,8 @@ ROUND_PARTS = {
     "bottom": [(1.5, 0.15), (1.5, 0.075), (1.425, 0.0), (0.0, 0.0)],
 }
 
-# Handle and spout: rows of (inner x, height, outer x, height, half width); each patch is one
-# half of a tube, the other its mirror image.
+# Handle and spout: rows of (inner x, height, outer x, height, half width). Each patch is half of a
+# tube; the other half is its mirror image.
 TUBES = {
     "handle": [(-1.6, 2.025, -1.5, 2.25, 0.3), (-2.3, 2.025, -2.5, 2.25, 0.3),
                (-2.7, 2.025, -3.0, 2.25, 0.3), (-2.7, 1.8, -3.0, 1.8, 0.3)],
@@ -38,7 +38,7 @@ TUBES = {
 
 
 def patches():
-    """Yields (name, 4 x 4 control points) of each patch, with u along the rows and v across them."""
+    """Yields (name, 4 x 4 control points) of each patch. Parameter u runs along the rows, v across the rows."""
     for name, rows in ROUND_PARTS.items():
         for sine, cosine in ((0, 1), (1, 0), (0, -1), (-1, 0)):  # the four quadrants
             patch = []
@@ -64,7 +64,7 @@ def bezier(points, t):
 
 
 def surface(patch, u, v):
-    """Returns the point and the cross product of the partial derivatives."""
+    """Returns the point at (u, v), and the cross product of the partial derivatives (the normal, unscaled)."""
     along = [bezier(column, u) for column in zip(*patch)]
     point, dv = bezier([value for value, _ in along], v)
     du, _ = bezier([slope for _, slope in along], v)
@@ -80,7 +80,7 @@ def dot(a, b):
 
 
 def normal_at(patch, u, v):
-    """Returns the unit normal; at a pole, where a whole border is one point, that of a nearby point."""
+    """Returns the unit normal. At a pole, where a whole border is one point, returns the normal of a nearby point."""
     _, normal = surface(patch, u, v)
     if math.hypot(*normal) < 1e-9:
         _, normal = surface(patch, u + 1e-4 * (0.5 - u), 0.5)
@@ -93,13 +93,13 @@ def outward_sign(patch):
     """Returns 1 or -1, the factor that makes the cross product point out of the pot or the tube."""
     middle, normal = surface(patch, 0.5, 0.5)
     corners = [p for row in patch for p in row]
-    if all(abs(p[2]) < 1 for p in corners):  # a tube: away from its own axis
+    if all(abs(p[2]) < 1 for p in corners):  # a tube: outwards is away from the tube's axis
         return math.copysign(1, normal[2] * middle[2])
     return math.copysign(1, dot(normal, (middle[0], middle[1] - 1.2, middle[2])))
 
 
 class Writer:
-    """Gives each distinct line of the file (a vertex, a normal) one number."""
+    """Writes each distinct vertex or normal once, and numbers them."""
 
     def __init__(self, file):
         self.file = file

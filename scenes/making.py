@@ -1,4 +1,4 @@
-"""Shared by the scripts beside it: numbers as options, and the error for a file that cannot be written."""
+"""Functions shared by the scripts of this folder: options that are numbers, and the error for a file that cannot be written."""
 
 import argparse
 import sys
@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 
 def at_least(least: int) -> Callable[[str], int]:
-    """Returns the `type` of an option that is a whole number of at least `least`."""
+    """Returns an argparse `type` for whole numbers of at least `least`."""
     def checked(text: str) -> int:
         try:
             number = int(text)

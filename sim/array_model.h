@@ -1,5 +1,5 @@
-// Drives Verilated hit_test_arrays in step, as one array of all their lanes: bursts in, results
-// out.
+// Drives several Verilated hit_test_arrays in lockstep, as one array of all their lanes: bursts in,
+// results out.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace raygate {
 
-/// Interface of an array, as RtlBurstUnit needs it.
+/// Interface of an array for RtlBurstUnit.
 class BurstModel {
  public:
   virtual ~BurstModel() = default;
@@ -56,7 +56,7 @@ class BurstCursor {
   }
 
  private:
-  /// Moves to the next bundle that has a test; stays if this one has.
+  /// Moves to the first bundle that has a test, counting from the current bundle.
   void settle() {
     while (!done() && (batch_[bundle_].record_count == 0 || batch_[bundle_].lanes == 0)) ++bundle_;
     lanes_ = done() ? 0 : batch_[bundle_].lanes;
@@ -69,9 +69,9 @@ class BurstCursor {
 
 /// A hardware lane's part of a batch: its bursts and their results.
 struct LaneShare {
-  std::vector<BurstCursor::Burst> bursts;  // all that went in, and the one that is going in
-  std::size_t closed = 0;                  // number of bursts that are over
-  std::size_t pointed = 0;                 // number of `results` that are complete
+  std::vector<BurstCursor::Burst> bursts;  // all started bursts; the last may be incomplete
+  std::size_t closed = 0;                  // number of bursts that have ended
+  std::size_t pointed = 0;                 // number of leading `results` that lack no point
   BurstResults results;
 
   void clear() {
@@ -80,21 +80,21 @@ struct LaneShare {
     closed = pointed = 0;
   }
   [[nodiscard]] bool all_closed() { return closed == bursts.size(); }
-  /// Returns whether every hit has its point.
+  /// Returns whether every hit has received its point.
   [[nodiscard]] bool all_pointed() {
     while (pointed < results.size() && results[pointed].kind != BurstResult::Kind::kHit) ++pointed;
     return pointed == results.size();
   }
 };
 
-/// The burst that goes into a lane.
+/// The burst that a lane is receiving.
 struct LaneInput {
   const PolygonRecord* record = nullptr;  // the next test; null between bursts
   const PolygonRecord* end = nullptr;
-  std::uint32_t tag = 0;
+  std::uint32_t tag = 0;  // index of `record` in the burst
 };
 
-/// hit_test_pkg::count_e
+/// Numbers of the counters, as in hit_test_pkg::count_e.
 enum Count {
   kTests,
   kMisses,
@@ -107,10 +107,10 @@ enum Count {
   kOutputStalls
 };
 
-/// An array of `lanes` lanes, in models of the class `Top` that Verilator made of hit_test_array
-/// with kModelLanes lanes each. Lanes share only the sums of their counters, so models side by side
-/// have the results, clocks and counters of one model of all lanes. Throws std::runtime_error if
-/// the hardware is broken: nothing goes in and nothing ends for kPatience clocks, or a result
+/// An array of `lanes` lanes, built of models with kModelLanes lanes each. `Top` is Verilator's
+/// class of hit_test_array. Lanes share only the sums of their counters. Several models therefore
+/// have the results, clocks and counters of one model with all lanes. Throws std::runtime_error if
+/// the hardware is broken: no test is taken and no burst ends for kPatience clocks, or a result
 /// belongs to no burst.
 template <class Top, int kModelLanes = 1, class Numbers = Binary32Numbers>
 class ArrayModel : public BurstModel {
@@ -153,7 +153,7 @@ class ArrayModel : public BurstModel {
 
   HitCounters counters() override {
     assert(in_flight_ == 0);
-    for (int i = 0; i < 3; ++i) clock();  // the counters are three clocks late
+    for (int i = 0; i < 3; ++i) clock();  // the counters have a latency of three clocks
     return {.tests = read(kTests),
             .misses = read(kMisses),
             .hits = read(kHits),
@@ -192,7 +192,7 @@ class ArrayModel : public BurstModel {
            });
   }
 
-  /// Runs a clock: offers every lane a test and takes its result.
+  /// Simulates one clock: offers every lane a test and takes every lane's result.
   void step() {
     unsigned valid = 0, ready = ~0u;
     for (int n = 0; n < lanes(); ++n) {
@@ -254,7 +254,7 @@ class ArrayModel : public BurstModel {
     }
   }
 
-  /// Puts the lane's next test into its slot.
+  /// Writes lane n's next test to the lane's input ports.
   void offer_test(int n) {
     const LaneInput& lane = inputs_[n];
     Top& model = model_of(n);
@@ -281,7 +281,7 @@ class ArrayModel : public BurstModel {
     port = static_cast<Port>((port & ~(1u << own)) | static_cast<unsigned>(value) << own);
   }
 
-  /// Returns lane n's share of the oldest batch for which `all` is false, or null.
+  /// Returns lane n's share of the oldest batch whose share is not complete by `all`, or null.
   LaneShare* awaited(int n, bool (LaneShare::*all)()) {
     for (unsigned age = 0; age < in_flight_; ++age) {
       LaneShare& share = work_at(age).shares[n];
@@ -290,8 +290,8 @@ class ArrayModel : public BurstModel {
     return nullptr;
   }
 
-  /// Takes a result. A word that ends nothing (a report, or nothing at all) does not count as
-  /// progress: broken hardware may repeat it for ever.
+  /// Takes lane n's output word. Only a word that ends a burst or carries a point counts as
+  /// progress: broken hardware may repeat other words for ever.
   void take_result(int n) {
     Top& model = model_of(n);
     const int own = n % kModelLanes;
@@ -340,7 +340,7 @@ class ArrayModel : public BurstModel {
   std::vector<Model<Top>> models_;
   Numbers numbers_;
   std::vector<LaneInput> inputs_;  // one per lane
-  unsigned offered_ = 0;           // lanes whose slot holds a test that was not taken yet
+  unsigned offered_ = 0;           // bit n: the test at lane n's input has not been taken yet
   unsigned quiet_ = 0;             // clocks since a test was taken, or a burst or a point ended
   Work works_[kMostBatches];
   unsigned oldest_ = 0, in_flight_ = 0;

@@ -10,8 +10,8 @@
 
 namespace raygate {
 
-/// `Top`: a class that Verilator made of board_core. At most one word per clock in each direction.
-/// Throws std::runtime_error if the board neither takes nor gives a word for kPatience clocks.
+/// Transfers up to one word per clock in each direction. `Top`: Verilator's class of board_core.
+/// Throws std::runtime_error if the board neither takes nor sends a word for kPatience clocks.
 template <class Top>
 class BoardLink : public WordLink {
  public:

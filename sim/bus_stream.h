@@ -10,30 +10,30 @@
 
 namespace raygate {
 
-/// One test, for a unit that takes it in NumWords words.
+/// One test of a unit whose tests have NumWords words.
 template <std::size_t NumWords>
 struct BusTest {
   std::array<std::uint32_t, NumWords> words;  ///< in the order of the bus
-  unsigned gap = 0;                           ///< clocks to wait although the unit is ready
+  unsigned gap = 0;  ///< clocks to wait before the first word, from when the unit is ready
 };
 
 struct BusResult {
   std::array<std::uint32_t, 3> point;  ///< Px, Py, Pz
-  std::uint64_t first_word;            ///< the clock edge that took the first word; they start at 1
-  std::uint64_t last_component;        ///< the clock edge after which Pz was on the bus
+  std::uint64_t first_word;            ///< number, from 1, of the edge that took the first word
+  std::uint64_t last_component;        ///< number of the edge after which Pz was on the bus
 };
 
-/// Sends `tests` through `unit`, a Model or WaveModel that has been reset, each as soon as the unit
-/// is ready and its gap is over, and calls `after_clock()` after each clock until the last result
-/// has come. The bus carries noise when it carries no word. Throws std::runtime_error if a result
-/// comes before its test, or if nothing happens for 64 clocks.
+/// Sends `tests` through `unit`, a Model or WaveModel that has been reset. Each test starts as soon
+/// as the unit is ready and the test's gap is over. Between tests the input bus carries noise.
+/// Calls `after_clock()` after each clock, including that of the last result. Throws
+/// std::runtime_error if a result comes before its test, or if nothing happens for 64 clocks.
 template <class UnitModel, std::size_t NumWords, class AfterClock>
 std::vector<BusResult> stream_tests(UnitModel& unit, const std::vector<BusTest<NumWords>>& tests,
                                     AfterClock&& after_clock) {
   std::mt19937 noise(1);
   std::vector<BusResult> results;
   std::size_t word = 0;            // next word of the test that is being sent
-  unsigned waited = 0;             // clocks with the unit ready
+  unsigned waited = 0;             // clocks for which the unit has been ready for the next test
   std::size_t component = 0;       // next component; three per result
   std::uint64_t quiet_until = 64;  // the edge by which something must have happened
   for (std::uint64_t edge = 1; component < 3 * tests.size(); ++edge) {

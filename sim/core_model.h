@@ -17,10 +17,10 @@
 
 namespace raygate {
 
-/// Cores of class `Top`, each in a `Holder` (see CorePort), clocked together. They share one port
-/// to memory in turn; it takes one request and gives one line per clock. Throws std::runtime_error
-/// if a core is broken: no line, result or test for longer than its queued questions can take, a
-/// ray that ends twice, lines in flight that it does not report.
+/// Cores of class `Top`, each in a `Holder` (see CorePort), clocked together. The cores take turns
+/// at one memory port, which accepts one request and returns one line per clock. Throws
+/// std::runtime_error if a core is broken: no line is requested and no test or ray ends for longer
+/// than queued exact decisions can take, a ray ends twice, or a line in flight is not reported.
 template <class Top, template <class> class Holder = Model>
 class CoreModel : public CoreUnit {
  public:
@@ -57,7 +57,7 @@ class CoreModel : public CoreUnit {
       }
       if (serve_memory()) quiet = 0;
       const std::uint64_t now = visits() - before;
-      // A ray visits each line once, and its hit's line once more.
+      // More visits are no progress: a ray visits each line once, and its hit's line once more.
       if (now != std::exchange(visited, now) && now <= 2 * sent * lines.size()) quiet = 0;
       if (++quiet > patience(sent + visited)) {
         broken("nothing asked for and nothing told for " + std::to_string(quiet) + " clocks; of " +
@@ -104,16 +104,16 @@ class CoreModel : public CoreUnit {
  private:
   using Core = CorePort<Top, Holder>;
   static constexpr std::uint64_t kPatience = 10'000;       // clocks
-  static constexpr std::uint64_t kQuestionClocks = 4'000;  // at most: hw/exact/exact_unit.sv
-  static constexpr std::uint64_t kMostQuestions = 3 * kTableRays + 128;  // waiting in a core
-  static constexpr unsigned kCoreBit = 48;  // of a tag in memory: above the core's own
+  static constexpr std::uint64_t kQuestionClocks = 4'000;  // per exact decision: exact_unit.sv
+  static constexpr std::uint64_t kMostQuestions = 3 * kTableRays + 128;  // queued in a core
+  static constexpr unsigned kCoreBit = 48;  // in memory tags: the core's number starts at this bit
 
   [[noreturn]] static void broken(const std::string& what) {
     throw std::runtime_error("ray_core: " + what);
   }
 
-  /// Returns the clocks for which a sound core may show no progress, if up to `questions` exact
-  /// decisions may be open.
+  /// Returns the most clocks for which a correct core shows no progress while up to `questions`
+  /// exact decisions are open.
   [[nodiscard]] std::uint64_t patience(std::uint64_t questions) const {
     return kPatience + (is_exact() ? kQuestionClocks * std::min(questions, kMostQuestions) : 0);
   }
@@ -125,8 +125,8 @@ class CoreModel : public CoreUnit {
 
   bool chance(int of_256) { return of_256 != 0 && static_cast<int>(random_() & 0xFF) < of_256; }
 
-  /// Runs a clock of the memory: takes a request, of the core whose turn it is, and gives a line.
-  /// Returns whether there was a request.
+  /// Simulates one clock of the memory: takes at most one request, from the core whose turn it is,
+  /// and returns at most one line. Returns whether a request was taken.
   bool serve_memory() {
     memory_.clock();
     bool taken = false;
@@ -158,8 +158,8 @@ class CoreModel : public CoreUnit {
   MemoryModel memory_;
   CoreStalls stalls_;
   std::mt19937_64 random_;
-  std::uint32_t lacking_ = 0;  // a line that memory answered with an error
-  std::size_t turn_ = 0;       // the core that is served first
+  std::uint32_t lacking_ = 0;  // number of the last line that memory answered with an error
+  std::size_t turn_ = 0;       // index of the core that is served first
 };
 
 }  // namespace raygate

@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// Returns the result in 256 bits of ray_core_axi: see hw/ray_core/registers.md.
+/// Decodes a 256-bit result of ray_core_axi (layout: hw/ray_core/registers.md).
 inline CoreResult result_of(const std::array<std::uint32_t, 8>& words) {
   CoreResult result;
   result.kind = static_cast<CoreResult::Kind>(words[0] & 1);
@@ -27,7 +27,7 @@ inline CoreResult result_of(const std::array<std::uint32_t, 8>& words) {
   return result;
 }
 
-/// Offers a ray at the ray port of `top`, a class that Verilator made of ray_core or ray_core_axi.
+/// Offers a ray at the ray port of `top`, a Verilated ray_core or ray_core_axi.
 template <class Top>
 void put_ray(Top& top, const CoreRay& ray) {
   std::memset(&top.ray_i, 0, sizeof top.ray_i);
@@ -42,14 +42,14 @@ void put_ray(Top& top, const CoreRay& ray) {
   top.ray_valid_i = 1;
 }
 
-/// Returns the result at the result port of `top`, a ray_core.
+/// Returns the result at the result port of `top`, a Verilated ray_core.
 template <class Top>
 CoreResult result_at(const Top& top) {
   return unpack_result(top.result_o);
 }
 
-/// The core `Top` (a class that Verilator made of ray_core), held by a `Holder`:
-/// Model, or WaveModel for waves.
+/// One ray core. `Top` is Verilator's class of ray_core; `Holder` is Model, or WaveModel to write
+/// waveforms.
 template <class Top, template <class> class Holder = Model>
 class CorePort {
  public:
@@ -73,7 +73,7 @@ class CorePort {
     rays_ = 0;
   }
 
-  /// Empties the core's caches, for a memory of `lines` lines; takes a clock.
+  /// Empties the core's caches and sets the size of memory to `lines` lines; takes one clock.
   void invalidate(std::size_t lines) {
     model_->lines_i = static_cast<std::uint32_t>(lines);
     model_->invalidate_i = 1;
@@ -84,7 +84,7 @@ class CorePort {
   // ---- Rays
 
   [[nodiscard]] bool is_offering() const { return model_->ray_valid_i != 0; }
-  /// Offers a ray until it is taken; only while none is on offer.
+  /// Offers a ray until the core takes it. Must not be called while is_offering().
   void offer(const CoreRay& ray) {
     put_ray(*model_, ray);
     ++rays_;
@@ -94,7 +94,7 @@ class CorePort {
 
   // ---- Results
 
-  /// Makes the port ready or not; returns whether a result is taken in this clock.
+  /// Sets the port's ready input; returns whether a result is taken in this clock.
   bool take_result(bool ready) {
     model_->result_ready_i = ready;
     const bool taken = ready && model_->result_valid_o != 0;
@@ -106,9 +106,9 @@ class CorePort {
 
   // ---- Memory
 
-  /// Returns whether lines are in flight, or will be: memory must not change.
+  /// Returns whether lines are in flight or about to be requested; memory must not change then.
   [[nodiscard]] bool is_busy_with_memory() const { return model_->outstanding_o != 0; }
-  /// Returns whether a line is requested; below, its number and its tag.
+  /// Returns whether the core requests a line; line() is its number and tag() the request's tag.
   [[nodiscard]] bool is_reading() const { return model_->read_valid_o != 0; }
   [[nodiscard]] std::uint32_t line() const { return model_->read_line_o; }
   [[nodiscard]] std::uint64_t tag() const { return model_->read_id_o; }
@@ -134,7 +134,7 @@ class CorePort {
   }
 
  private:
-  /// Counts ray_core_pkg::event_e.
+  /// Adds this clock's events, one bit each in the order of ray_core_pkg::event_e.
   void count() {
     const unsigned events = model_->events_o;
     counters_.rays += events & 1;

@@ -13,7 +13,7 @@
 
 namespace raygate {
 
-/// Memory of lines, by number; lines have their request's tag. Takes and gives one per clock.
+/// Memory of numbered lines, returned with their request's tag. One request, one line per clock.
 class MemoryModel {
  public:
   explicit MemoryModel(const MemoryTiming& timing)
@@ -36,7 +36,7 @@ class MemoryModel {
 
   /// Returns whether a request would be taken in this clock.
   [[nodiscard]] bool ready() const { return ready_; }
-  /// Takes a request. Lines beyond the last one come with an error.
+  /// Takes a request. Requests for lines beyond the last one are answered with an error.
   void read(std::uint32_t line, std::uint64_t tag) {
     int latency = timing_.latency;
     if (!cached_.empty()) {
@@ -53,11 +53,11 @@ class MemoryModel {
     free_at_ = now_ + static_cast<std::uint64_t>(64 / timing_.bytes);
   }
 
-  /// Returns whether a line is there in this clock.
+  /// Returns whether a line is available in this clock. The next functions describe this line.
   [[nodiscard]] bool valid() const { return !due_.empty() && due_.top().at <= now_; }
   [[nodiscard]] std::uint32_t number() const { return due_.top().line; }
   [[nodiscard]] bool is_error() const { return number() >= lines_.size(); }
-  /// Returns the line; zeros if it is an error.
+  /// Returns the line, or zeros if is_error().
   [[nodiscard]] MemoryLine line() const { return is_error() ? MemoryLine{} : lines_[number()]; }
   [[nodiscard]] std::uint64_t tag() const { return due_.top().tag; }
   void pop() { due_.pop(); }
@@ -65,7 +65,7 @@ class MemoryModel {
   /// Returns whether no line is in flight.
   [[nodiscard]] bool is_idle() const { return due_.empty(); }
 
-  /// Returns the number of lines that the cache lacked.
+  /// Returns the number of cache misses; without a cache, the number of requests.
   [[nodiscard]] std::uint64_t misses() const { return misses_; }
 
  private:

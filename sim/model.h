@@ -1,4 +1,4 @@
-// Owns a Verilated model, whatever its top.
+// Owns a Verilated model of any top module.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace raygate {
 
 /// Returns a context whose models start with zeros in all registers or, with
-/// RAYGATE_RANDOM_RESET=<seed> in the environment, with random bits, as hardware does. No result
-/// may depend on them.
+/// RAYGATE_RANDOM_RESET=<seed> in the environment, with random bits, as in hardware. No result may
+/// depend on these initial values.
 inline std::unique_ptr<VerilatedContext> make_context() {
   auto context = std::make_unique<VerilatedContext>();
   if (const char* seed = std::getenv("RAYGATE_RANDOM_RESET")) {
@@ -27,8 +27,8 @@ inline std::unique_ptr<VerilatedContext> make_context() {
 template <class Top>
 class Model {
  public:
-  /// Evaluates once: in its first evaluation Verilator sees no clock edge. RAYGATE_MUTANT in the
-  /// environment selects the fault in a netlist with faults (sim/mutate).
+  /// Evaluates the model once, because the first evaluation ignores a clock edge. RAYGATE_MUTANT in
+  /// the environment selects the fault to inject in a netlist with faults (sim/mutate).
   Model() {
     if constexpr (requires(Top top) { top.mutant; }) {
       if (const char* fault = std::getenv("RAYGATE_MUTANT")) {
@@ -40,7 +40,7 @@ class Model {
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
-  // Verilator 5.006 can hang when a model is taken down while another's context is the thread's.
+  // Verilator 5.006 can hang if a model is destroyed while the thread's context is another model's.
   ~Model() {
     Verilated::threadContextp(context_.get());
     top_->final();
@@ -53,14 +53,14 @@ class Model {
   const Top& operator*() const { return *top_; }
   VerilatedContext& context() { return *context_; }
 
-  /// Lets the outputs follow the inputs: all that a combinational top needs.
+  /// Updates the outputs from the inputs. A combinational top needs no other call.
   void eval() { top_->eval(); }
 
-  /// One clock cycle: a rising edge with the inputs as they are, then the falling edge. The
-  /// outputs read afterwards are those between this rising edge and the next.
+  /// Simulates one clock cycle: a rising edge with the present inputs, then the falling edge. The
+  /// outputs read afterwards are those between this rising edge and the next one.
   ///
-  /// At a falling edge Verilator only notes that the clock is low. If it can be told so (Verilator
-  /// 5.006 can, where the model's ___024root.h is included), that evaluation is skipped.
+  /// At a falling edge the model only records that the clock is low. If the model's ___024root.h of
+  /// Verilator 5.006 is included, the record is written directly and the evaluation is skipped.
   void clock() {
     if constexpr (requires(Top top) { top.rootp->__Vtrigrprev__TOP__clk_i = 0; }) {
       edge(1);
@@ -72,14 +72,14 @@ class Model {
     }
   }
 
-  /// Half a clock cycle: the clock goes to `level`.
+  /// Simulates half a clock cycle: the clock changes to `level`.
   void edge(bool level) {
     top_->clk_i = level;
     top_->eval();
     clocks_ += level;
   }
 
-  /// Pulls the reset, which is asynchronous, low without a clock edge, and releases it.
+  /// Asserts and releases the asynchronous, active-low reset, without a clock edge.
   void reset() {
     top_->clk_i = 0;
     top_->rst_ni = 1;

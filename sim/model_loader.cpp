@@ -29,7 +29,7 @@ constexpr const char* kModels = RAYGATE_BUILD_FOLDER "/sim/models/";
                    "cmake --build " + std::string(kBuildFolder) + " --target " + file.name + ".so");
 }
 
-/// Keeps other processes from building in the same folder for as long as it lives.
+/// A lock, held until destruction, that keeps other processes from building in the same folder.
 class BuildLock {
  public:
   explicit BuildLock(const ModelFile& file)
@@ -67,7 +67,7 @@ void build(const ModelFile& file) {
   if (status != 0) fail(file, "building it failed (" + log + ")");
 }
 
-/// Opens a model's file; returns null if it is missing or incomplete.
+/// Opens a model's file. Returns null if the file is missing or incomplete.
 void* open_file(const ModelFile& file) {
   return ::dlopen((std::string(kModels) + file.name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
 }
@@ -91,7 +91,7 @@ bool has_simulation() { return true; }
 
 void* load_model(const ModelFile& file) {
   static std::mutex mutex;
-  static std::map<std::string, void*> loaded;  // and never unloaded: models live as long as they do
+  static std::map<std::string, void*> loaded;  // never unloaded, because models use the code
   const std::lock_guard lock(mutex);
   void*& factory = loaded[file.name];
   if (factory == nullptr) factory = make_model_of(file);

@@ -10,9 +10,9 @@ struct ModelFile {
   int seconds;       ///< rough build time on two cores
 };
 
-/// Returns the function `make_model` of the model's file. Builds a missing file first, in one
-/// process if several ask for it, and says so on standard error. Throws InputError if it cannot be
-/// built. Thread-safe.
+/// Returns the function `make_model` of the model's file. If the file is missing, builds it first
+/// and reports this on standard error. Only one process at a time builds. Throws InputError if the
+/// file cannot be built. Thread-safe.
 [[nodiscard]] void* load_model(const ModelFile& file);
 
 /// Returns `make_model` as a `Function`, which must be its type in sim/models.

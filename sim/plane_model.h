@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// Interface of a unit, as RtlPlaneUnit needs it.
+/// Interface of a unit for RtlPlaneUnit.
 class PlaneModel {
  public:
   virtual ~PlaneModel() = default;
@@ -20,7 +20,7 @@ class PlaneModel {
   [[nodiscard]] virtual std::uint64_t clocks() const = 0;
 };
 
-/// The unit `Top` (a class that Verilator made).
+/// PlaneModel of `Top`, Verilator's class of a hit_test_unit.
 template <class Top, class Numbers = Binary32Numbers>
 class PlaneModelOf final : public PlaneModel {
  public:
@@ -30,9 +30,9 @@ class PlaneModelOf final : public PlaneModel {
   }
 
   void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override {
-    glm::vec3 unread;  // what the bus has before the first result
+    glm::vec3 unread;  // words on the output bus before the first result
     glm::vec3* point = &unread;
-    unit_->valid_i = 1;  // whenever the unit is ready, the next test is there
+    unit_->valid_i = 1;  // a test follows whenever the unit is ready
     for (std::size_t i = 0; i < tests.size(); ++i) {
       const PlaneTest& test = tests[i];
       if (!unit_->ready_o) throw std::runtime_error("hit_test_unit: not ready for a test");
@@ -48,7 +48,7 @@ class PlaneModelOf final : public PlaneModel {
   [[nodiscard]] std::uint64_t clocks() const override { return unit_.clocks(); }
 
  private:
-  /// Simulates a clock with `word` on the bus; returns the other bus's word after it.
+  /// Simulates one clock with `word` on the input bus. Returns the word then on the output bus.
   float exchange(float word) {
     unit_->bus_i = numbers_.to_word(word);
     unit_.clock();

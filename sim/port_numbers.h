@@ -1,4 +1,4 @@
-// Port numbers: the layout of numbers in the ports of Verilated models.
+// Layout of numbers in the ports of Verilated models.
 #pragma once
 
 #include <bit>
@@ -7,17 +7,17 @@
 
 namespace raygate {
 
-/// Returns slot `n` of a port with `size` bytes per slot: Verilator keeps the lowest bits at the
-/// lowest address, as this machine does.
+/// Returns the address of slot `n` of a port with `size` bytes per slot. Requires a little-endian
+/// host: Verilator stores the lowest bits at the lowest address.
 template <class Port>
 char* slot(Port& port, int n, std::size_t size) {
   static_assert(std::endian::native == std::endian::little);
   return reinterpret_cast<char*>(&port) + size * static_cast<std::size_t>(n);
 }
 
-/// Floats, unchanged. Numbers of other formats are packed differently (host/variants).
+/// Packs binary32 numbers: floats pass unchanged. host/variants packs other formats.
 struct Binary32Numbers {
-  /// Writes `count` numbers to the slot of lane `lane`; every slot has as many.
+  /// Writes `count` numbers to the slot of lane `lane`; every lane's slot has `count` numbers.
   template <class Port>
   void write(Port& port, int lane, const float* x, int count) const {
     const std::size_t size = sizeof(float) * static_cast<std::size_t>(count);

@@ -7,7 +7,7 @@
 namespace raygate {
 namespace {
 
-/// Returns `x` moved up or down by `steps` floats (by its bits, whatever they are).
+/// Returns the float whose bit pattern is that of `x` plus `steps`.
 float stepped(float x, int steps) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + static_cast<std::uint32_t>(steps));
 }
@@ -55,7 +55,7 @@ glm::vec3 RandomBursts::random_direction() {
   return direction;
 }
 
-/// Returns a triangle around a point that the ray meets, beside it, or nearly parallel to the ray.
+/// Returns a triangle with corners around a random point of the ray. The ray may hit or miss it.
 PolygonRecord RandomBursts::triangle(const glm::vec3& direction) {
   const double size = std::exp2(uniform(-6.0, 3.0));
   const glm::dvec3 center = glm::dvec3(direction) * std::exp2(uniform(-4.0, 6.0));
@@ -78,7 +78,7 @@ void RandomBursts::spoil(PolygonRecord& record, const glm::vec3& direction) {
     case 0:
       words(record)[below(16)] = special();
       break;
-    case 1:  // exactly on the bound, or a step off
+    case 1:  // bounds equal to |U|, or one float off
       for (int k = 0; k < 3; ++k) {
         const glm::vec3& e = record.edges[k];
         const float u = (e.x * direction.x + e.y * direction.y) + e.z * direction.z;
@@ -88,7 +88,7 @@ void RandomBursts::spoil(PolygonRecord& record, const glm::vec3& direction) {
     case 2:  // t much larger or smaller
       record.d = std::ldexp(record.d, static_cast<int>(below(300)) - 150);
       break;
-    case 3: {  // V much larger or smaller, beyond the range of valid divisors
+    case 3: {  // V much larger or smaller, also too small a divisor beside the largest of N
       const int shift = static_cast<int>(below(40)) - 20;
       for (int k = 0; k < 3; ++k) record.normal[k] = std::ldexp(record.normal[k], shift);
       if (one_in(2)) record.normal[static_cast<int>(below(3))] *= std::exp2(13.0f);
@@ -111,7 +111,7 @@ PolygonRecord RandomBursts::any_record(const glm::vec3& direction, const Polygon
     return record;
   }
   PolygonRecord record = before;
-  if (kind == 1) {  // as far as the one before, or nearly so: around the margin of 64 + 64 steps
+  if (kind == 1) {  // nearly as far as the record before: near ties are within 64 + 64 floats
     const int reach = 1 << below(12);
     record.d = stepped(record.d, static_cast<int>(below(2 * reach + 1)) - reach);
     return record;
@@ -130,7 +130,7 @@ BurstBatch RandomBursts::make(std::uint64_t tests) {
     bundle.record_count = below(7);
     glm::vec3 direction{1.0f};
     for (int lane = 0; lane < kLanes; ++lane) {
-      // Most rays are neighbours of the one before.
+      // Three of four rays are neighbours of the ray before.
       if (lane == 0 || one_in(4)) direction = random_direction();
       for (int k = 0; k < 3; ++k) {
         bundle.direction[k][lane] = stepped(direction[k], static_cast<int>(below(5)) - 2);

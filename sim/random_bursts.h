@@ -1,4 +1,4 @@
-// Bursts of hit tests to compare pipelined units: typical ones and adversarial ones.
+// Bursts of hit tests to compare pipelined units: typical and adversarial bursts.
 #pragma once
 
 #include <random>
@@ -8,24 +8,24 @@
 
 namespace raygate {
 
-/// A batch with the records it points to.
+/// A batch, with the records to which its bundles point.
 struct BurstBatch {
   std::vector<PolygonRecord> records;
   std::vector<RayBundle> bundles;
   std::uint64_t tests = 0;
 };
 
-/// Makes batches from a seed. About half of the records are triangles that some of the rays hit,
-///   edge-on and grazing ones among them; a quarter are such triangles with words replaced: by
-///   specials (zeros, subnormals, infinities, NaN, the largest and smallest), bounds by |U| of a
-///   ray or its neighbours, d by values that bring distances to near ties, to overflow and to
-///   underflow; an eighth are copies of the record before, alike or with d a few units off; an
-///   eighth are random bits.
+/// Makes random batches from a seed. Of the records, about
+/// * 1/2 are triangles that some of the rays hit, also at vertices, at edges and at grazing angles;
+/// * 1/4 are such triangles with changed words: random bits, special values (zeros, subnormals,
+///   infinities, NaN, extremes), bounds within a float of a ray's |U|, scaled d or N;
+/// * 1/8 are copies of the record before, with d at most 2,048 floats away, for near ties;
+/// * 1/8 are random bits.
 class RandomBursts {
  public:
   explicit RandomBursts(std::uint64_t seed) : random_(seed) {}
 
-  /// About `tests` tests, in bundles of 1 to 8 rays and 1 to 6 records.
+  /// Makes at least `tests` tests, in bundles of 0 to 8 rays and 0 to 6 records.
   BurstBatch make(std::uint64_t tests);
 
  private:

@@ -16,10 +16,10 @@ struct CoreStalls {
   std::uint64_t seed = 0;
 };
 
-/// Contexts of a core, and of a board's core.
+/// Rays in flight in a core, and in a board's core.
 inline constexpr int kTableRays = 64, kBoardRays = 16;
 
-/// Cores behind one port to memory.
+/// Number and kind of the cores that share one memory port.
 struct CoreSet {
   int cores = 1;
   bool exact = false;                 ///< the cores resolve doubts themselves
@@ -32,14 +32,14 @@ struct CoreSet {
                                                       const CoreStalls& stalls = {},
                                                       const CoreSet& set = {});
 
-/// Makes a ray core for one ray at a time, of behavioural arithmetic, whose words are those of
-/// structural arithmetic. Writes every clock to `file` (VCD), complete when the core is destroyed.
-/// Throws InputError if the file cannot be written or the model cannot be built.
+/// Makes a ray core with behavioural arithmetic, meant to trace single rays. Writes the waveform of
+/// every clock to `file` (VCD); the file is complete when the core is destroyed. Throws InputError
+/// if the file cannot be written or the model cannot be built.
 [[nodiscard]] std::unique_ptr<CoreUnit> make_core_wave(const std::filesystem::path& file,
                                                        const MemoryTiming& timing);
 
-/// Makes the small core of a board (hw/board) and its SDRAM, Verilated, behind a link as fast as
-/// its clock. Throws InputError if the model cannot be built.
+/// Makes the small core of a board (hw/board) and its SDRAM, Verilated, behind a link of one word
+/// per clock. Throws InputError if the model cannot be built.
 [[nodiscard]] std::unique_ptr<CoreUnit> make_rtl_board();
 
 }  // namespace raygate

@@ -23,8 +23,8 @@ std::unique_ptr<PlaneModel> make_plane(Arith arith) {
   return std::unique_ptr<PlaneModel>(make());
 }
 
-// If no other batch follows, the unit runs empty for 46 clocks after a batch. Of 0 to 256 tests per
-// lane, this number took the fewest clocks on most scenes, for one lane and for eight.
+// After a batch that no other follows, the pipeline drains for 46 clocks. Of the values 0 to 256,
+// this one took the fewest clocks on most scenes, with one lane and with eight.
 constexpr std::size_t kEnoughTestsALane = 64;
 
 constexpr ModelFile kBehaviouralArray{"hit_test_array_behavioural",

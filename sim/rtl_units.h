@@ -1,5 +1,5 @@
-// The hit-test units in simulation, behind the interfaces of host/intersect/unit: the paper's,
-// which takes one test at a time, and arrays of pipelined ones.
+// The simulated hit-test units, behind the interfaces of host/intersect/unit: the paper's unit, one
+// test at a time, and arrays of pipelined units.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ class PlaneModel;
 class RtlPlaneUnit final : public PlaneUnit {
  public:
   explicit RtlPlaneUnit(Arith arith = Arith::kStructural);
-  explicit RtlPlaneUnit(std::unique_ptr<PlaneModel> model);  ///< of another format
+  explicit RtlPlaneUnit(std::unique_ptr<PlaneModel> model);  ///< a unit of another format
   ~RtlPlaneUnit() override;
 
   void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override;
@@ -44,10 +44,10 @@ class RtlBurstUnit : public BurstUnit {
   /// Throws InputError if the model cannot be built.
   explicit RtlBurstUnit(int lanes, Arith arith = Arith::kStructural,
                         const BurstStalls& stalls = {});
-  explicit RtlBurstUnit(std::unique_ptr<BurstModel> model);  ///< of another format
+  explicit RtlBurstUnit(std::unique_ptr<BurstModel> model);  ///< an array of another format
   ~RtlBurstUnit() override;
 
-  /// The tests of the second batch follow those of the first without a gap.
+  /// In the hardware, the tests of a second batch follow the first batch's tests without a gap.
   void start(std::span<const RayBundle> batch) override;
   void finish(BurstResults& results) override;
   [[nodiscard]] std::size_t enough_tests() const override { return enough_tests_; }

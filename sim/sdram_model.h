@@ -10,10 +10,10 @@
 
 namespace raygate {
 
-/// SDRAM by the data sheets of MT48LC16M16A2 and AS4C16M16. It takes a command between two edges of
-/// its user's clock; a word that is read is valid two edges after the edge at which the command
-/// left. Throws std::runtime_error if the user violates a data sheet: a command too early, a row
-/// that is not open, a refresh too late.
+/// SDRAM by the data sheets of MT48LC16M16A2 and AS4C16M16. The SDRAM takes a command between two
+/// edges of its user's clock. Read data is valid at the second edge after the edge that puts out
+/// the command. Throws std::runtime_error if the user violates a data sheet: a command too early, a
+/// row that is not open, a refresh too late.
 class SdramModel {
  public:
   /// State of the pins in a clock.
@@ -27,7 +27,7 @@ class SdramModel {
   explicit SdramModel(double clock_mhz)
       : clock_ns_(1000.0 / clock_mhz), words_(std::size_t{1} << 24) {}
 
-  /// Takes the pins after the user's last edge; returns the data pins at the user's next.
+  /// Takes the pins after the user's last clock edge; returns the data pins at the next edge.
   std::uint16_t clock(const Pins& pins) {
     ++now_;
     const std::uint16_t out = coming_;
@@ -90,14 +90,14 @@ class SdramModel {
 
  private:
   struct Bank {
-    int row = -1;
-    std::uint64_t words_at = 0, closes_at = 0, free_at = 0;
+    int row = -1;                                            // -1: no open row
+    std::uint64_t words_at = 0, closes_at = 0, free_at = 0;  // earliest clocks: word, close, open
   };
 
-  // RAS, CAS, WE
+  // Commands: bits RAS, CAS, WE, active low. kAll: the address bit for auto-precharge or all banks.
   static constexpr unsigned kNone = 7, kActivate = 3, kRead = 5, kWrite = 4, kPrecharge = 2,
                             kRefresh = 1, kMode = 0, kAll = 1u << 10;
-  static constexpr std::uint16_t kNoise = 0xA5A5;  // no device drives the pins
+  static constexpr std::uint16_t kNoise = 0xA5A5;  // read while no device drives the data pins
 
   [[nodiscard]] std::uint64_t clocks(double ns) const {
     const auto whole = static_cast<std::uint64_t>(ns / clock_ns_);
@@ -109,7 +109,7 @@ class SdramModel {
   void need(bool holds, const char* what) const {
     if (!holds) broken(what);
   }
-  /// Checks the rate of refreshes: 8,192 rows in 64 ms, one by one.
+  /// Checks the time since the last refresh: 64 ms / 8,192 rows = 7.8125 us at most.
   void check_refresh() const {
     need(!is_set_ || static_cast<double>(now_ - refreshed_at_) * clock_ns_ <= 7'812.5,
          "a refresh is late");

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kTests = 1000;
 
-// The paper's frame.
+// The frame for which the paper counts operations.
 constexpr double kPixels = 320 * 200;
 constexpr double kPolygons = 500;
 constexpr double kDepth = 4;  // reflections or refractions
@@ -17,7 +17,7 @@ constexpr double kFrameTests = kPixels * kPolygons * kDepth;
 
 double per_test(std::uint64_t count) { return static_cast<double>(count) / kTests; }
 
-// `divisions`: how many divisions count. Returns the operations of a test.
+// `divisions`: of all tests. `preparation`: operations per frame. Returns the operations per test.
 double print_row(const char* form, const OperationCount& count, std::uint64_t divisions,
                  double preparation) {
   const double operations = per_test(count.multiplications + count.additions + divisions);
@@ -30,7 +30,7 @@ double print_row(const char* form, const OperationCount& count, std::uint64_t di
 
 void print_table(const char* title, const OperationCount& general, std::uint64_t general_divisions,
                  const OperationCount& proposed, std::uint64_t proposed_divisions) {
-  // A ray's vector is three subtractions; moving a polygon's three vertices is nine.
+  // Three subtractions give a ray's direction; nine translate a polygon's three vertices.
   constexpr double kRays = 3 * kPixels;
   std::printf("%s\n  form          x    +    /    all    hit tests  preparation     together\n",
               title);

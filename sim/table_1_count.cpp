@@ -26,8 +26,8 @@ std::vector<BusTest<NumWords>> random_tests(std::size_t num_tests) {
 
 }  // namespace
 
-// After an edge, enables are those of the next edge. The first edge takes a word
-// and computes nothing, so reading after every edge misses no operation.
+// The enables read after an edge take effect at the next edge. The first edge takes a word and
+// computes nothing, so reading after every edge counts every operation.
 
 OperationCount count_proposed_form(std::size_t num_tests) {
   Model<Vhit_test_unit_open> unit;

@@ -6,7 +6,7 @@
 
 namespace raygate {
 
-/// Clocks in which the simulated unit kept the result of its multiplier, adder or divider.
+/// Numbers of clocks in which the simulated unit used the result of its multiplier, adder, divider.
 struct OperationCount {
   std::uint64_t multiplications = 0;
   std::uint64_t additions = 0;
@@ -20,7 +20,7 @@ struct OperationCount {
 /// Runs `num_tests` random tests back to back through hit_test_unit (equation 10).
 [[nodiscard]] OperationCount count_proposed_form(std::size_t num_tests);
 
-/// Runs as many tests through general_hit_test_unit (equations 4 and 5).
+/// Runs `num_tests` random tests through general_hit_test_unit (equations 4 and 5).
 [[nodiscard]] OperationCount count_general_form(std::size_t num_tests);
 
 }  // namespace raygate

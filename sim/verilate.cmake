@@ -1,28 +1,25 @@
 # Verilated models, and the tests that use them.
 #
 #   raygate_model(fp_adder_f16 TOP fp_adder PARAMETERS ExpWidth=5 FracWidth=10 [OPEN [LEVELS 6]])
-#     A static library `fp_adder_f16`: module TOP of hw/ (or of the calling folder, where a test joins
-#     several modules under one top) with these parameters, as class Vfp_adder_f16 in
-#     "Vfp_adder_f16.h". OPEN, at the price of speed, allows writing a waveform (sim/wave_model.h) of up to
-#     LEVELS levels of instances, and reading the signals that visible.vlt lists. Name a model after its module
-#     and its parameters' meaning; models that several programs use are built once.
-#
-#     PATCHES <folder>: modules in it replace those of hw/, without lint: broken on purpose, or supplied by a
-#     user (synth/brought.py).
-#     NETLIST <file>: Yosys wrote TOP to this file; modules that it instantiates but lacks are taken from hw/.
-#     AS <name>: the class is called V<name>, as that of model <name>, so that a program can use it instead.
-#
+#     Adds the static library `fp_adder_f16`: module TOP of hw/ (or of the calling folder, where a test joins several
+#     modules under one top) with these parameters, as class Vfp_adder_f16 in "Vfp_adder_f16.h". OPEN allows writing
+#     waveforms (sim/wave_model.h) of up to LEVELS levels of instances, and reading the signals that visible.vlt lists;
+#     simulation is then slower. SHARED: instances share code (shared.vlt). Name a model after its module and the
+#     meaning of its parameters; several programs can then use one model.
+#     PATCHES <folder>: modules in this folder replace those of hw/, without lint. They are broken on purpose, or
+#     supplied by a user (synth/brought.py).
+#     NETLIST <file>: Yosys's netlist of TOP. Modules that the netlist lacks are taken from hw/.
+#     AS <name>: the class is called V<name>, like that of model <name>; a program can then use this model instead.
 #   raygate_model_file(ray_core_exact ray_core.cpp TOP ray_core ...)
-#     The same, and a target ray_core_exact.so: a file of that name in build/sim/models, which programs load
-#     (model_loader.h). It contains the model and the wrapper sim/models/ray_core.cpp.
-#
+#     Adds the same library, and the target ray_core_exact.so: a file of this name in build/sim/models with the model
+#     and the wrapper sim/models/ray_core.cpp, which programs load at run time (model_loader.h).
 #   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...] [RANDOM_RESETS <filter>])
-#     Builds <name>.cpp of this folder with GoogleTest and adds its cases to ctest. RANDOM_RESETS: the cases
-#     that match GoogleTest's filter run again, from each of three sets of random register contents.
+#     Builds <name>.cpp of this folder with GoogleTest and adds its cases to ctest. RANDOM_RESETS: the cases that match
+#     GoogleTest's filter run again, from each of three sets of random register contents.
 #
-# Debian's verilate() isn't used: it runs Verilator while CMake configures, one model after the other,
-# and compiles the run-time library again for each model. Here a model is one build step and two
-# translation units, so that the compiler sees across Verilator's functions.
+# Debian's verilate() isn't used, because it runs Verilator while CMake configures, one model after the other, and
+# compiles the run-time library again for each model. Here a model is one build step. It has only two translation units,
+# which lets the compiler inline across Verilator's functions.
 
 find_program(VERILATOR_BIN NAMES verilator_bin HINTS $ENV{VERILATOR_ROOT}/bin REQUIRED)
 find_path(VERILATOR_INCLUDE verilated.h
@@ -36,14 +33,14 @@ add_library(verilated STATIC
 target_include_directories(verilated SYSTEM PUBLIC
   ${VERILATOR_INCLUDE} ${VERILATOR_INCLUDE}/vltstd)
 target_link_libraries(verilated PUBLIC Threads::Threads)
-# The code is Verilator's: no warnings, no sanitizers, and optimised in every kind of build.
-# (gcc's vectorising of neighbouring statements packs and unpacks more than it gains.)
+# Verilator's code is compiled without warnings and sanitizers, and optimised in every kind of build.
+# -fno-tree-slp-vectorize: vectorising neighbouring statements costs more than it gains here.
 set(RAYGATE_VERILATED_OPTIONS -w -O3 -fno-tree-slp-vectorize -fno-sanitize=all)
 target_compile_options(verilated PRIVATE ${RAYGATE_VERILATED_OPTIONS})
 set_target_properties(verilated PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
 
-# hw/*/*.core list the files, in the order to compile them. Verilator runs in the root of the checkout and is given
-# relative names, so that what it writes is the same in every checkout.
+# hw/*/*.core list the files, in compilation order. Verilator runs in the root of the checkout and gets relative names,
+# so that its output is the same in every checkout.
 execute_process(COMMAND python3 -m synth.cores WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
   OUTPUT_VARIABLE RAYGATE_HW OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 string(REPLACE "\n" ";" RAYGATE_HW "${RAYGATE_HW}")
@@ -51,18 +48,18 @@ file(GLOB cores CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/*/*.core)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${cores})
 set(RAYGATE_HW_PACKAGES ${RAYGATE_HW})
 list(FILTER RAYGATE_HW_PACKAGES INCLUDE REGEX "_pkg\\.sv$")
-# Verilator finds a module by its name in these folders, so that it reads only the modules that a top needs.
+# Verilator finds a module by its name in these folders, and reads only the modules that a top needs.
 set(RAYGATE_HW_FOLDERS ${RAYGATE_HW})
 list(TRANSFORM RAYGATE_HW_FOLDERS REPLACE "/[^/]*$" "")
 list(REMOVE_DUPLICATES RAYGATE_HW_FOLDERS)
 list(TRANSFORM RAYGATE_HW_FOLDERS PREPEND -I)
 
-# Every warning stops the build, including UNOPTFLAT (a loop in the logic, simulated by repetition).
-# Verilator 5.006 folds trees of single-bit operations wrongly: a netlist of fp_divider in bfloat16,
-# which Yosys evaluates rightly, gave wrong quotients. Without that pass the speed is the same.
-# Assertions stop a simulation that breaks them; they read the asynchronous reset in step with the clock
-# (SYNCASYNCNET). What the RTL leaves open (registers before their first load, x in an assignment) is 0 in
-# a model, or random in one whose context asks for it (sim/model.h): its bits must not depend on that.
+# -Wall: every warning stops the build, including UNOPTFLAT (a loop in the logic, simulated by repetition).
+# -fno-const-bit-op-tree: Verilator 5.006 folds trees of single-bit operations wrongly. A netlist of fp_divider in bfloat16
+# had wrong quotients, but is right when evaluated by Yosys. Disabling this pass does not change the speed.
+# --assert: a failed assertion stops the simulation. -Wno-SYNCASYNCNET: assertions read the asynchronous reset at clock edges.
+# --x-assign, --x-initial: undefined values (registers before their first load, x in assignments) are 0, or random if the
+# model's context asks for it (sim/model.h). Results must not depend on undefined values.
 set(RAYGATE_VERILATOR_FLAGS -Wall -Wno-PINCONNECTEMPTY -Wno-SYNCASYNCNET -fno-const-bit-op-tree --assert
   --x-assign unique --x-initial unique sim/words.vlt)
 set(RAYGATE_CHECKS sim/checks)  # bindings.sv binds them to the modules of hw/
@@ -91,8 +88,8 @@ function(raygate_model NAME)
     set(MODEL_AS ${NAME})
   endif()
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.verilated)
-  # all.cpp includes all files that Verilator wrote, whose names only it knows; for large models, slow.cpp has the code
-  # that runs once (resets, first evaluation): half of the code, but an eighth of the compile time without optimisation.
+  # all.cpp includes all files that Verilator wrote; their names are not known before. For large models, slow.cpp has the
+  # code that runs once (resets, first evaluation). This is half of the code; without optimisation it compiles fast.
   set(all ${dir}/all.cpp ${dir}/slow.cpp)
   set_source_files_properties(${dir}/slow.cpp PROPERTIES COMPILE_OPTIONS -O0)
   list(TRANSFORM MODEL_PARAMETERS PREPEND -G)
@@ -135,7 +132,7 @@ function(raygate_model_file NAME SOURCE)
   raygate_model(${NAME} ${ARGN})
   add_library(${NAME}.so MODULE EXCLUDE_FROM_ALL ${CMAKE_SOURCE_DIR}/sim/models/${SOURCE})
   set_target_properties(${NAME} PROPERTIES EXCLUDE_FROM_ALL ON)
-  # Hidden symbols: functions that another library could replace would not be inlined.
+  # Symbols are hidden, because the compiler does not inline functions that another library could replace.
   set_target_properties(${NAME} ${NAME}.so PROPERTIES
     POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   set_target_properties(${NAME}.so PROPERTIES PREFIX "" OUTPUT_NAME ${NAME} SUFFIX .so

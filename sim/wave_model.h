@@ -10,12 +10,12 @@
 
 namespace raygate {
 
-/// A Model of a `Top` that was made OPEN. After `record`, every clock is written to a waveform:
-/// a value change dump, which GTKWave and others show, 10 ns per clock.
+/// A Model of a `Top` that was Verilated with OPEN (sim/verilate.cmake). After `record`, every
+/// clock is written to a waveform: a value change dump (VCD) of 10 ns per clock.
 template <class Top>
 class WaveModel : public Model<Top> {
  public:
-  /// Starts the file at `path`. Throws InputError if it cannot be written.
+  /// Starts the file at `path`. Throws InputError if the file cannot be written.
   void record(const std::string& path) {
     this->context().traceEverOn(true);
     this->context().timeunit(-9);
@@ -26,7 +26,7 @@ class WaveModel : public Model<Top> {
     if (!wave_->isOpen()) throw InputError(path + ": can't be written");
   }
 
-  /// As Model::clock. In the waveform inputs change 2 ns before the edge that takes them.
+  /// Like Model::clock. In the waveform, inputs change 2 ns before the edge that samples them.
   void clock() {
     if (wave_) {
       this->eval();

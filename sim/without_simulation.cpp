@@ -19,7 +19,7 @@ constexpr const char* kUnit = "the simulated hit-test unit";
 
 }  // namespace
 
-// No such model is ever made.
+// Never constructed: the members of type std::unique_ptr need complete types.
 class BurstModel {};
 class PlaneModel {};
 

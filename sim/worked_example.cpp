@@ -1,4 +1,4 @@
-// Sends the paper's worked example (section 4.2) through its unit by clocks, as in its figure 10.
+// Sends the paper's worked example (section 4.2) through the paper's unit, one clock at a time.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -36,8 +36,8 @@ constexpr std::array<float, 7> kWords = {3.3125f,  5.875f,    2.921875f, 15.1875
                                          0.46875f, 2.109375f, 1.75f};
 constexpr std::array<const char*, 7> kNames = {"Ix", "Iy", "Iz", "a", "b", "c", "d"};
 
-// Prints a register's word after the edges `first` to `last`, at which it belongs to the example,
-// and "-" after others, when it is the reset value or the bus's word between tests.
+// Prints a register's word after the edges `first` to `last`, when it belongs to the example, or
+// else "-". After other edges the word is the reset value or a bus word from between tests.
 void print_register(std::uint32_t word, std::uint64_t edge, std::uint64_t first,
                     std::uint64_t last = std::numeric_limits<std::uint64_t>::max()) {
   if (first <= edge && edge <= last) {

@@ -5,7 +5,7 @@ from types import TracebackType
 
 
 def _tell(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    """Prints one line for Ctrl-C, after which Python exits with status 130, and a traceback for any other exception."""
+    """Prints one line for Ctrl-C and a traceback for any other exception. After Ctrl-C, Python exits with status 130."""
     if issubclass(kind, KeyboardInterrupt):
         print("interrupted; what was finished is kept", file=sys.stderr)
     else:

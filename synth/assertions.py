@@ -1,4 +1,4 @@
-"""Proves the assertions of modules of proofs/ about RTL."""
+"""Proves the SystemVerilog assertions that modules in proofs/ make about the RTL."""
 
 import dataclasses
 import pathlib
@@ -8,13 +8,13 @@ from collections.abc import Callable
 from synth import catalogue, cores, induction, smt, store, tools, yosys
 from synth.smt import PROOFS
 
-# A line of a counterexample of Yosys's: name, decimal, hexadecimal, bits.
+# A line of a counterexample that Yosys prints: name, decimal value, hexadecimal value, bits.
 PORT = re.compile(r"^  \\(\S+) +\S+ +\S+ +([01x]+)$", re.M)
 
 
 @dataclasses.dataclass(frozen=True)
 class Proof:
-    """A proof or a check; `quick`: takes well under half a minute, so that `make test` runs it, too; `long`: runs only on request."""
+    """A proof or a check. `quick`: takes well under half a minute and is also run by `make test`. `long`: runs only on request."""
 
     name: str
     claim: str
@@ -29,14 +29,14 @@ def rtl(core: str) -> list[pathlib.Path]:
     return catalogue.Design("", "", core).sources()
 
 
-Prepare = Callable[[list[pathlib.Path]], str]  # from the RTL, Yosys's commands that make the module which a proof instantiates
+Prepare = Callable[[list[pathlib.Path]], str]  # returns, for RTL files, Yosys's commands that make the module a proof instantiates
 
 
 def opened(name: str, wires: str, memories: str = "", **parameters: object) -> Prepare:
-    """Makes module opened_NAME of module `name`: flat, with inner wires as outputs, as invariants refer to them.
+    """Returns a Prepare that makes module opened_NAME of module `name`: flat, with inner wires as outputs, for use in invariants.
 
-    `wires`: their names, in Yosys's patterns. `memories`: name, depth and width of each: all its words become one output, word 0
-    lowest, named like the memory without generate blocks and without the `ram` around it.
+    `wires`: the names of these wires, as Yosys patterns. `memories`: name, depth and width of each memory. All words of a memory become
+    one output, word 0 lowest. The output has the memory's name without generate blocks and without the instance of `ram`.
     """
     words = memories.split()
     lines = ["flatten -noscopeinfo", f"rename -top opened_{name}", f"cd opened_{name}"]
@@ -53,14 +53,13 @@ def opened(name: str, wires: str, memories: str = "", **parameters: object) -> P
 def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = None,
           prepare: Prepare | None = None, parameters: tuple[tuple[str, object], ...] = (), steps: int = 0,
           reach: int = 0, beside: tuple[str, ...] = (), name: str = "") -> tuple[dict, bool]:
-    """Proves the assertions of proofs/<top>.sv; raises Refuted or ToolFailed if one does not hold, if there is
-    none, or if the assumptions leave a `cover` out of reach.
+    """Proves the assertions of proofs/<top>.sv. Raises Refuted or ToolFailed if an assertion does not hold, if the file has no assertion,
+    or if the assumptions make a `cover` unreachable.
 
-    `method`: "SAT" (Yosys's) or "Bitwuzla". `sources`: the RTL, by default the modules of hw/arith that are used.
-    `prepare`: makes a module of it first. `beside`: files of `sources`, by name, whose modules the proof itself instantiates
-    beside that module.
-    `steps`: 0 for combinational assertions; else they are proven for that many clocks from reset and for the
-    clock after any `steps` clocks in which they held. `reach`: clocks to reach covers in, by default `steps`.
+    `method`: "SAT" (Yosys's solver) or "Bitwuzla". `sources`: the RTL, by default the modules of hw/arith that the proof uses.
+    `prepare`: makes a module of `sources` first. `beside`: stems of the files of `sources` that the proof reads besides that module.
+    `steps`: 0 for combinational assertions. Otherwise the assertions are proven in the first `steps` clocks from reset, and in the clock
+    after any `steps` clocks in which they held. `reach`: number of clocks within which every `cover` must be reached, by default `steps`.
     """
     folder = store.OUT / "proofs" / (name or top)
     own = PROOFS / f"{top}.sv"

@@ -13,7 +13,7 @@ from synth import catalogue, cores, fpga, store, tools
 
 @dataclasses.dataclass(frozen=True)
 class Board(catalogue.Design):
-    """A board: its top is boards/NAME.sv."""
+    """A board. Its top module is in boards/NAME.sv."""
 
     holds: str = ""  # the catalogue's design on the board
     mhz: int = 40  # the clock that the top derives from the oscillator

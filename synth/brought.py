@@ -1,8 +1,8 @@
-"""User-supplied modules that replace modules of hw/: reads and checks them, gives them the ports of what they replace, proves them.
+"""Reads, checks and proves user-supplied modules that replace modules of hw/, and wraps them in the replaced modules' ports.
 
-A user's module has the ports of the module that it replaces, and those of its parameters that are widths; its name is free.
-It may use modules of hw/ and of its own file. `bring` writes a folder with a file of the replaced module's name, which
-Verilator (PATCHES of sim/verilate.cmake) and all of synth (`in_place`) then read instead of hw/'s.
+A user's module may have any name. It must have the ports and the width parameters of the module that it replaces. It may use modules of
+hw/ and of its own file. `bring` writes a folder with a file named like the replaced module. Verilator (PATCHES of sim/verilate.cmake) and
+all of synth (`in_place`) then read this file instead of the one in hw/.
 `python3 -m synth.brought ADDER=my.sv ...` only checks the files and writes the folder.
 """
 
@@ -26,16 +26,16 @@ from pyslang import driver, syntax
 from synth import catalogue, cores, float_proofs, prove, store, tools, yosys
 from synth.assertions import Proof, holds
 
-# Sizes for the check, unusual ones so that a width written as a number is found.
+# Parameter values for the check. They are unusual, to detect widths that are written as numbers.
 SAMPLES = {"Width": 13, "ExpWidth": 6, "FracWidth": 13}
-FOLDERS = "common", "arith", "fp"  # of hw/, whose modules a user's module may use
-SAT_WIDTH, MOST_PRODUCTS = 5, 11  # of multipliers: bits that SAT proves in one piece; most bits of which every product is tried
+FOLDERS = "common", "arith", "fp"  # folders of hw/ with the modules that a user's module may use
+SAT_WIDTH, MOST_PRODUCTS = 5, 11  # multiplier widths in bits: proven by SAT as a whole; at most, tested by simulating every product
 
 
 @dataclasses.dataclass(frozen=True)
 class Place:
-    """A module of hw/ that users may replace. `proofs`: makes its proofs for a unit; `told`: returns the module's outputs and the correct
-    ones, from the values of a counterexample."""
+    """A module of hw/ that users may replace. `proofs`: returns the module's proofs for a unit. `told`: returns, for the values of a
+    counterexample, the module's outputs and the correct outputs."""
     module: str
     proofs: Callable[[catalogue.Design], list[Proof]]
     told: Callable[[dict[str, int]], tuple[dict[str, int], dict[str, int]]] | None = None
@@ -67,14 +67,14 @@ def _sum(values: dict[str, int]) -> tuple[dict[str, int], dict[str, int]]:
     return ({"sum": values["sum"], "carry out": values["carry out"]}, {"sum": total, "carry out": carry})
 
 
-# By make's variable. `adder` instantiates adders of every kind; a user's adder is its prefix adder.
+# Replaceable modules by the name of make's variable. A user's adder replaces the prefix adder, one of the kinds that `adder` instantiates.
 PLACES = {
     "ADDER": Place("prefix_adder", _adds, _sum),
     "MULTIPLIER": Place("booth_multiplier", _multiplies,
                         lambda values: ({"product": values["product"]}, {"product": values["a"] * values["b"]})),
     "DIVIDER_ROW": Place("srt_row", _floats(*(("srt_row", form) for form in ("binary16", "bfloat16", "binary32")))),
     "ROUNDER": Place("fp_round", _floats(("multiply", "binary16"), ("add", "binary16")))}
-CALLED = {"carry": "carry in", "carry_out": "carry out"}  # ports of the proofs, in words
+CALLED = {"carry": "carry in", "carry_out": "carry out"}  # descriptions of ports in the proofs
 
 
 def folder_of(files: dict[str, str]) -> pathlib.Path:
@@ -84,7 +84,7 @@ def folder_of(files: dict[str, str]) -> pathlib.Path:
 
 
 def bring(files: dict[str, str]) -> pathlib.Path:
-    """Checks the files, by key of PLACES, and writes the folder. Raises ValueError, "FILE:LINE: what is wrong"."""
+    """Checks the files, given by key of PLACES, writes their folder and returns it. Raises ValueError ("FILE:LINE: ...") for a bad file."""
     folder = folder_of(files)
     for word, name in files.items():
         original = next(catalogue.HW.glob(f"*/{PLACES[word].module}.sv"))
@@ -112,7 +112,7 @@ def bring(files: dict[str, str]) -> pathlib.Path:
 
 @dataclasses.dataclass(frozen=True)
 class _Module:
-    """A user's file: its text, in which modules with names of hw/ are renamed, and its top module with the line of its name."""
+    """A user's file: its text, with modules renamed that have names of hw/; its top module; and the line with the top module's name."""
     file: str
     text: str
     top: str
@@ -123,7 +123,7 @@ class _Module:
 
 
 def _read(name: str) -> str:
-    """Returns the text of a file in UTF-8 or UTF-16, with or without a byte order mark; replaces other bytes, as in comments."""
+    """Returns the text of a file in UTF-8, with or without a byte order mark, or in UTF-16 with one. Replaces invalid bytes."""
     try:
         data = pathlib.Path(name).read_bytes()
     except OSError as error:
@@ -133,8 +133,8 @@ def _read(name: str) -> str:
 
 
 def _module(name: str, replaced: str) -> _Module:
-    """Reads a user's file. Its top is the module with the file's name, or else the last that no other uses. Removes time scales: the
-    modules of hw/ have none, and tools want them everywhere or nowhere."""
+    """Reads a user's file. The top is the module with the file's name, or else the last module that no other module uses. Removes time
+    scales: the modules of hw/ have none, and tools reject a mixture."""
     text = _read(name).encode()
     tree = syntax.SyntaxTree.fromText(text.decode(), name)
     modules, instances = {}, []
@@ -160,7 +160,7 @@ def _module(name: str, replaced: str) -> _Module:
             edits.append((token.range.end.offset, token.range.end.offset, b"_brought"))
     for start, end, by in sorted(edits, reverse=True):
         text = text[:start] + by + text[end:]
-    # Yosys reads no blank in the name of a file.
+    # The file name is percent-encoded because Yosys cannot read a file name with a blank.
     module = _Module(name, f'`line 1 "{urllib.parse.quote(name)}" 0\n{text.decode()}\n`resetall\n',
                      f"{top}_brought" if any(catalogue.HW.glob(f"*/{top}.sv")) else top,
                      tree.sourceManager.getLineNumber(modules[top][0].location))
@@ -174,8 +174,8 @@ def _packages() -> list[pathlib.Path]:
 
 
 def _elaborated(top: str, file: pathlib.Path) -> tuple[list[str], dict[str, str]]:
-    """Returns a module's parameters, and its ports with directions and widths at the sizes of SAMPLES, as slang elaborates it with the
-    modules of hw/ that it uses. Raises ValueError for the first error."""
+    """Elaborates a module with slang, with the parameter values of SAMPLES. Returns the module's parameters and, by name, its ports'
+    directions and widths. Raises ValueError for the first error."""
     slang = driver.Driver()
     slang.sourceManager.setDisableProximatePaths(True)
     slang.addStandardArgs()
@@ -195,8 +195,8 @@ def _elaborated(top: str, file: pathlib.Path) -> tuple[list[str], dict[str, str]
 
 
 def _lint(top: str, file: pathlib.Path, parameters: list[str]) -> None:
-    """Runs Verilator's lint without two warnings that a beginner may ignore: widths, which the proof checks, and words that feed
-    themselves, which are slow to simulate. Raises ValueError for the first warning."""
+    """Runs Verilator's lint without two warnings that a beginner may ignore: WIDTH, because the proof checks widths, and UNOPTFLAT, because
+    combinational loops between bits of one word are only slow to simulate. Raises ValueError for the first warning."""
     done = subprocess.run(
         [tools.find("verilator"), "--lint-only", "-Wno-style", "-Wno-WIDTH", "-Wno-UNOPTFLAT", "--top-module", top,
          *(f"-G{key}={value}" for key, value in SAMPLES.items() if key in parameters),
@@ -209,7 +209,7 @@ def _lint(top: str, file: pathlib.Path, parameters: list[str]) -> None:
 
 @contextlib.contextmanager
 def in_place(folder: pathlib.Path) -> Iterator[None]:
-    """Makes all of synth read the files of a folder instead of hw/'s, and keep results there."""
+    """Makes all of synth read the files of `folder` instead of those of the same names in hw/, and keep results in `folder`."""
     before = store.OUT
     store.OUT, cores.replaced = folder / "synth", folder
     try:
@@ -227,7 +227,7 @@ def widths(module: str, unit: catalogue.Design) -> list[int]:
 
 
 def in_words(word: str, claim: str, values: dict[str, str]) -> str:
-    """Describes a counterexample: inputs, the module's outputs and the correct ones, in decimal and hexadecimal."""
+    """Describes a counterexample: inputs, the module's outputs and the correct outputs, in decimal and hexadecimal."""
     def number(name: str, value: int) -> str:
         size = sizes.get(name, max(value.bit_length(), 1))
         return f"{name} = {value:,}" + (f" (0x{value:0{-(-size // 4)}X})" if size > 1 else "")
@@ -242,8 +242,8 @@ def in_words(word: str, claim: str, values: dict[str, str]) -> str:
 
 
 def judge(files: dict[str, str], unit: catalogue.Design) -> list[dict]:
-    """Proves the claims about files that `bring` has checked. Returns a row for each claim, of each module up to the first that does not
-    hold: word, file, claim, how, holds, and `counterexample` in words."""
+    """Proves the claims about files that `bring` has checked; stops at a module's first claim that does not hold. Returns a row per claim:
+    word (key of PLACES), file, claim, how, holds, seconds if proven, and `counterexample` in words."""
     rows = []
     with in_place(folder_of(files)):
         for word, name in files.items():
@@ -262,7 +262,7 @@ def judge(files: dict[str, str], unit: catalogue.Design) -> list[dict]:
 
 @tools.command("error")
 def main() -> int:
-    """Checks the files among words such as ADDER=my.sv. Returns 2 if one is refused."""
+    """Checks the files named on the command line, as in ADDER=my.sv. Returns 2 if a file is refused."""
     files = {word: name for word, _, name in (each.partition("=") for each in sys.argv[1:]) if name.endswith((".sv", ".v"))}
     for word in files.keys() - PLACES.keys():
         raise ValueError(f"{word}={files[word]}: found a file, expected one of {', '.join(PLACES)} with it")

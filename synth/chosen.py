@@ -10,7 +10,7 @@ from synth import catalogue
 
 
 def whole(least: int, most: int) -> Callable[[str], int]:
-    """Returns the `type` of an option: a whole number from `least` to `most`."""
+    """Returns an argparse `type` for options whose values are whole numbers from `least` to `most`."""
     def checked(text: str) -> int:
         if not re.fullmatch(r"\d+", text) or not least <= int(text) <= most:
             raise argparse.ArgumentTypeError(f"expected a whole number from {least} to {most}, got {text!r}")
@@ -19,7 +19,7 @@ def whole(least: int, most: int) -> Callable[[str], int]:
 
 
 def whole_numbers(text: str) -> list[int]:
-    """The `type` of an option: whole numbers from 1 to 255 with commas between."""
+    """Parses an option's value: comma-separated whole numbers from 1 to 255."""
     return [whole(1, 255)(number) for number in text.split(",")]
 
 
@@ -35,8 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
-    """Parses the command line, whose options may be in capitals, like make's variables. Reports a wrong value in one line, without all
-    options."""
+    """Parses the command line. Names of options may be in capitals, like make's variables. Reports a wrong value in one line, without the
+    usage message."""
     parser.print_usage = lambda *_: None
     return parser.parse_args([re.sub("^--[A-Z-]+", lambda name: name[0].lower(), word) for word in sys.argv[1:]])
 

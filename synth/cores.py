@@ -1,8 +1,8 @@
-"""Reads the hardware's lists of files, hw/*/*.core, in FuseSoC's format (CAPI2). There is no other list.
+"""Reads the lists of hardware files, hw/*/*.core, in FuseSoC's format (CAPI2). All tools use these lists.
 
-`python3 -m synth.cores [CORE ...]` prints the files of these cores (hit_test, ...; all if none) and of the
-cores that they depend on, one per line, in the order to compile them: a core after those that it uses, its
-packages first. Exit status 2 if a list and its folder disagree.
+`python3 -m synth.cores [CORE ...]` prints the files of the named cores (hit_test, ...; default: all cores) and of the cores that these
+depend on, one file per line, in compilation order: a core follows the cores that it uses, and its packages come first. The exit status is
+2 if a list and its folder disagree.
 """
 
 import pathlib
@@ -13,25 +13,25 @@ HW = pathlib.Path(__file__).resolve().parent.parent / "hw"
 
 
 def names(hw: pathlib.Path = HW) -> list[str]:
-    """Returns all cores, each after those that it depends on."""
+    """Returns the names of all cores, each core after the cores that it depends on."""
     return _ordered(sorted(file.stem for file in hw.glob("*/*.core")), hw)
 
 
-# A folder whose files replace hw/'s of the same names (brought.py).
+# A folder of files to use instead of those of the same names in hw/ (see brought.py).
 replaced: pathlib.Path | None = None
 
 
 def files(core: str, hw: pathlib.Path = HW) -> list[pathlib.Path]:
-    """Returns the files of `core` and of all cores that it depends on, in the order to compile them.
+    """Returns the files of `core` and of all cores that it depends on, in compilation order.
 
-    Raises ValueError if a list names a file that does not exist, or omits one that does.
+    Raises ValueError if a list names a file that does not exist, or omits a file of its folder.
     """
     found = [file for name in _ordered([core], hw) for file in _own(name, hw)]
     return [replaced / file.name if replaced and (replaced / file.name).exists() else file for file in found]
 
 
 def used(top: str, among: list[pathlib.Path]) -> list[pathlib.Path]:
-    """Returns the files of `among` that module `top` needs: its own and, recursively, those of modules named in them."""
+    """Returns the files of `among` that module `top` needs: the file of `top` and, recursively, of every module named in such a file."""
     at = {file.stem: file for file in among}
     needed, open_ends = set(), {top} & at.keys()
     while open_ends:

@@ -1,9 +1,9 @@
-"""Writes hw/modules.md, the table of modules, and the tables of pages that show published CSV files.
+"""Writes hw/modules.md, the table of modules, and those tables of results/README.md that show published CSV files.
 
-`python3 -m synth.datasheet` writes them; with `--check` it changes nothing, and its exit status is 1 if a page or a file generated
-from registers.md is out of date, or if the example of hw/README.md does not pass Verilator.
+`python3 -m synth.datasheet` writes these pages and the files of `synth.registers`. With `--check` it changes nothing; the exit status is
+then 1 if a page or a file generated from registers.md is out of date, or if the example of hw/README.md does not pass Verilator.
 
-A module's row: the first sentence of its header, latency, throughput, area and delay. For the registers' files see `synth.registers`.
+A module's row has the first sentence of the module's header, latency, throughput, area, delay and memory bits.
 """
 
 import difflib
@@ -14,8 +14,8 @@ import sys
 from synth import catalogue, cores, measure, registers, store, tables, tools
 
 PAGE = cores.HW / "modules.md"
-FLOWS = {"arith": "fast", "fp": "fast", "hit_test": "parts"}  # by folder; else `blocks`
-WORDS = 12  # of a module's description, at most
+FLOWS = {"arith": "fast", "fp": "fast", "hit_test": "parts"}  # by folder; other folders: `blocks`
+WORDS = 12  # most words of a module's description
 INTRO = """\
 # Modules
 
@@ -33,7 +33,7 @@ def header(text: str) -> str:
 
 
 def sentences(text: str) -> list[str]:
-    """Returns the sentences of a text, without full stops; the one in `I . N` ends no sentence."""
+    """Returns the sentences of a text, without full stops. The dot in `I . N` ends no sentence."""
     return [part.strip() for part in re.split(r"(?<=[^\s.])\.(?=\s|$)|\n", text) if part.strip()]
 
 
@@ -53,7 +53,7 @@ def modules() -> dict[str, dict[str, pathlib.Path]]:
 
 
 def page(figures: dict[str, list[str]]) -> str:
-    """Returns the text of PAGE; `figures`: the last columns of each module's row."""
+    """Returns the text of PAGE. `figures`: the last three columns (um2, ns, bits) of each module's row."""
     parts = [INTRO]
     for core, files in modules().items():
         parts += [f"## {core}\n", tables.page(["module", "what it is", "latency, clocks", "throughput", "um2", "ns", "bits"],
@@ -62,12 +62,12 @@ def page(figures: dict[str, list[str]]) -> str:
 
 
 def published(text: str) -> dict[str, list[str]]:
-    """Returns the figures in a page that `page` wrote, by module."""
+    """Returns the `figures` argument from which `page` wrote this text."""
     return {row[1]: row[-4:-1] for row in (line.split("|") for line in text.splitlines() if line.startswith("|"))}
 
 
 def figures() -> dict[str, list[str]]:
-    """Returns area, slowest path and bits of memory of each module; what was measured before is not measured again."""
+    """Returns area (um2), slowest path (ns) and memory bits of each module. Reuses kept results of unchanged modules."""
     library = catalogue.LIBRARIES[0]
     rows = [catalogue.Row(core, catalogue.design(name), {library.name: (FLOWS.get(core, "blocks"),)})
             for core, files in modules().items() for name in files]
@@ -103,7 +103,7 @@ def write() -> None:
 
 
 def check() -> list[str]:
-    """Returns what is out of date, as lines of a diff. Raises ToolFailed as `lint` does."""
+    """Returns the differences between the files and their generated contents, as lines of a diff. Raises ToolFailed as `lint` does."""
     lines = []
     for file, new in made(published(PAGE.read_text())).items():
         lines += difflib.unified_diff(file.read_text().splitlines(), new.splitlines(),

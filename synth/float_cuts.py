@@ -1,7 +1,7 @@
-"""Proves that the float cores give the same results with all their registers as without, only later.
+"""Proves that the pipelined float cores give the same results as the combinational cores, `latency` clocks later.
 
-From any state, and with any operands before and after: the result of the operands of clock 0 comes out in clock
-`latency`. The rounding mode stays the same meanwhile.
+The claim: the result of the operands of clock 0 comes out in clock `latency`, from any state and with any operands in other clocks. The
+rounding mode must be constant in clocks 0 to `latency`.
 """
 
 import dataclasses
@@ -13,13 +13,13 @@ from synth.float_proofs import ARITHMETIC, FLOAT, FORMATS, FloatProof
 
 @dataclasses.dataclass(frozen=True)
 class Cut:
-    """A core's module with registers, and what it is compared with."""
+    """A pipelined core, and the combinational core that it is compared with."""
 
     name: str
     top: str
-    uncut: str  # its proof in OPERATIONS, whose contracts are used
-    latency: dict[str, int]  # by format
-    product: int = 0  # the clock in which the multiplier's contract gives the product
+    uncut: str  # key in OPERATIONS of the proof of the combinational core; its contracts are used here, too
+    latency: dict[str, int]  # in clocks, by format
+    product: int = 0  # the clock in which the contract of the multiplier puts out the product
 
 
 CUTS = [
@@ -30,7 +30,7 @@ CUTS = [
 
 
 def question(cut: Cut, latency: int, stages: str, uncut: str) -> str:
-    """Returns the model and the claim: ports of state k have the suffix _k, those of the module without registers none."""
+    """Returns SMT-LIB for both cores (`stages`: pipelined, `uncut`) and the claim. Ports of the pipelined core in clock k end in _k."""
     named, wires = smt.ports(uncut, "uncut")
     modes = [wire for wire in wires if wire in ("rounding_mode_i", "tininess_after_i")]
     enters = {wire: word(uncut, wire) for wire in wires if wire.endswith("_i")}
@@ -47,14 +47,14 @@ def question(cut: Cut, latency: int, stages: str, uncut: str) -> str:
 
 
 def word(model: str, wire: str) -> str:
-    """Returns a port's term; a bit becomes a word of one bit."""
+    """Returns the SMT-LIB term of a port. A Bool port becomes a bit vector of one bit."""
     is_bit = re.search(rf"\(define-fun \|\S+_n {wire}\| \(\(state \S+\)\) Bool", model)
     return f"(ite {wire} #b1 #b0)" if is_bit else wire
 
 
 def joints(cut: Cut, stages: str, uncut: str) -> list[str]:
-    """Returns equalities of the registers after each row of the divider, to be proven in this order, each from the ones before. A solver
-    that gets only the claim about the result does not end."""
+    """Returns one claim per row of the divider: the registers after the row hold the combinational core's values. The claims are proven in
+    this order, each with the previous ones assumed, because the solver does not terminate on the final claim alone."""
     found: dict[int, list[str]] = {}
     for wire, row in re.findall(rf"\(define-fun \|{cut.top}_n (\S+gen_row\[(\d+)\]\.\w+_q)\|", stages):
         inside = f"uncut_n {wire}|"
@@ -65,7 +65,7 @@ def joints(cut: Cut, stages: str, uncut: str) -> list[str]:
 
 
 def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
-    """Proves that a core gives the same results with its registers; raises ToolFailed if it does not."""
+    """Proves that a core gives the same results with its registers as without. Raises ToolFailed if not."""
     exp, frac, *_ = FORMATS[name]
     folder = store.OUT / "proofs" / f"float.cuts.{cut.name}.{name}.{arithmetic}"
     uncut = FloatProof(cut.uncut, name, arithmetic)

@@ -1,6 +1,6 @@
 """Compares other projects' binary32 cores with ours in the same flows: `make synth TOP=float_peers`.
 
-HardFloat is in the Verilog of a Rocket core, cvfpu and T-Head's divider in the sources of CV32E40P; both are wheels of PyPI.
+HardFloat is taken from the Verilog of a Rocket core, cvfpu and T-Head's divider from the sources of CV32E40P. PyPI has wheels of both.
 """
 
 import dataclasses
@@ -18,7 +18,7 @@ FOLDER = store.OUT / "float_peers"
 WRAPPERS = tools.FLOWS / "float_peers.sv"
 BENCH = tools.FLOWS / "float_peers.cpp"
 OPERATIONS = {"add": np.add, "multiply": np.multiply, "divide": np.divide}
-# Origin, operation, wrapper, its parameter Does, description, and its stages of registers (None: iterative).
+# Origin, operation, wrapper module, value of its parameter Does, description, and number of register stages (None: iterative).
 CORES = (
     ("ours", "add", "our_add", None, "", 0),
     ("HardFloat", "add", "hardfloat_multiply_add", 1, "multiply-add, times 1", 2),
@@ -44,7 +44,7 @@ class PeerDesign(catalogue.Design):
 
 
 def fetch() -> pathlib.Path:
-    """Downloads and unpacks the wheels; returns their folder. Raises ToolFailed."""
+    """Downloads and unpacks the wheels; returns their folder. Raises ToolFailed if pip fails."""
     wheels = FOLDER / "wheels"
     pins = (tools.ROOT / "synth" / "float_peers.txt").read_text()
     if not (FOLDER / "pins").exists() or (FOLDER / "pins").read_text() != pins:
@@ -59,7 +59,7 @@ def fetch() -> pathlib.Path:
 
 
 def modules(text: str, tops: list[str]) -> str:
-    """Returns the Verilog of `tops` and of all modules in them."""
+    """Returns the Verilog of the modules `tops` and of all modules that they instantiate, directly or indirectly."""
     bodies = {match[1]: match[0] for match in re.finditer(r"^module (\w+)\(.*?^endmodule$", text, re.M | re.S)}
     wanted: dict[str, None] = {}
     waiting = list(tops)
@@ -99,8 +99,8 @@ def wrapped(wrapper: str) -> pathlib.Path:
 
 
 def vectors(operation: str, count: int) -> pathlib.Path:
-    """Writes `count` operations with the results of this processor; returns the file. Operands have any bits, exponents near each other, or
-    results near the smallest normal number, a third each."""
+    """Writes `count` operations with the results of this processor; returns the file. A third of the operations each have random bits,
+    exponents near each other, and results near the smallest normal number."""
     random = np.random.default_rng(1)
     a, b = random.integers(0, 2**32, (2, count), np.uint32)
     exponent, off, third = (a >> 23 & 255).astype(int), random.integers(-3, 4, count), np.arange(count) % 3

@@ -1,9 +1,8 @@
-"""Proves the float cores against IEEE 754 for all operands: the queries, and the solver's answers.
+"""Proves the float cores against IEEE 754 for all operands.
 
-A query is one file of SMT-LIB, build/synth/proofs/float.NAME/query.smt2, that any solver reads:
-the specification (proofs/float/*.smt2), the core as Yosys writes it, and a claim
-(proofs/float/claims). "unsat" means that no operand breaks the claim. Placeholders ($E, $S) are
-numbers that follow from the format.
+A query is one SMT-LIB file for any solver, build/synth/proofs/float.NAME/query.smt2. It has the specification (proofs/float/*.smt2), the
+core as Yosys writes it, and a claim (proofs/float/claims). The answer "unsat" means that no operands break the claim. Placeholders such as
+$E and $S stand for numbers that depend on the format.
 """
 
 import dataclasses
@@ -16,10 +15,10 @@ from synth import cores, smt, store, tools, yosys
 
 FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
 
-# Exponent and fraction widths of a format, and of the next wider format that Bitwuzla knows.
+# Exponent and fraction widths of a format, and of the next wider format that Bitwuzla supports.
 FORMATS = {"binary16": (5, 10, 8, 23), "binary32": (8, 23, 11, 52)}
-# Formats that Bitwuzla does not know: their numbers are held in the format of this fraction width, and NARROW_CLAIMS have files of their
-# own for them (claims/*_narrow.smt2).
+# Formats that Bitwuzla does not support. Their numbers are represented in a supported format with HELD_FRACTION fraction bits. The claims
+# about the operations NARROW_CLAIMS are in separate files for these formats (claims/*_narrow.smt2).
 NARROW_FORMATS = {"bfloat16": (8, 7, 11, 52)}
 HELD_FRACTION = {"bfloat16": 23}
 NARROW_CLAIMS = ("add", "multiply", "divide")
@@ -33,9 +32,9 @@ ADDERS = ["ripple", "uniform", "graded", "prefix"]  # the structural kinds
 
 @dataclasses.dataclass(frozen=True)
 class Operation:
-    """A claim about a module, with its specification and the contracts in it.
+    """A claim about module `top` ("": about the specification alone).
 
-    `top`: "" for a claim about the specification alone. `parameters`: the module's.
+    `specification`: files of proofs/float. `contracts`: modules that a contract replaces. `parameters`: parameters of `top`.
     """
 
     top: str
@@ -78,7 +77,7 @@ OPERATIONS = {
 
 @dataclasses.dataclass(frozen=True)
 class FloatProof:
-    """A claim about one module; `long`: it takes more than a few minutes."""
+    """A claim about one module. `long`: the proof takes more than a few minutes."""
 
     operation: str
     format: str
@@ -88,7 +87,7 @@ class FloatProof:
 
     @property
     def name(self) -> str:
-        """Unique; the folder's name, too."""
+        """Unique name of the claim; part of its folder's name."""
         bits = self.quotient_bits
         parts = (self.operation, self.format, self.arithmetic, f"{bits}_bits" if bits else "")
         return ".".join(filter(None, parts))
@@ -100,7 +99,7 @@ class FloatProof:
 
     @property
     def parameters(self) -> str:
-        """The module's parameters, "Name value ..."."""
+        """The module's parameters as text, "Name value ..."."""
         fixed = string.Template(OPERATIONS[self.operation].parameters).substitute(self.numbers())
         return f"{fixed} {ARITHMETIC[self.arithmetic]}"
 
@@ -111,18 +110,18 @@ class FloatProof:
         width = 1 + exp + frac
         bias, wide_bias = 2 ** (exp - 1) - 1, 2 ** (wide_exp - 1) - 1
         infinity = (2 ** exp - 1) << frac
-        rows = (self.quotient_bits or frac + 2) // 2  # of the divider, two bits each
+        rows = (self.quotient_bits or frac + 2) // 2  # rows of the divider; each gives two quotient bits
         residual = frac + 2
 
         def wide(significand: int, exponent: int) -> str:
-            """Returns significand * 2**exponent as a Wide."""
+            """Returns significand * 2**exponent in the wider format, sort Wide."""
             top = significand.bit_length() - 1
             fraction = (significand << (wide_frac - top)) - (1 << wide_frac)
             return (f"(fp #b0 #b{exponent + top + wide_bias:0{wide_exp}b} "
                     f"#b{fraction:0{wide_frac}b})")
 
         def power(exponent: int) -> str:
-            """Returns the number before 2**exponent, the middle between the two, and 2**exponent."""
+            """Returns, for p = 2**exponent: the largest number below p of frac + 1 significant bits, the middle between it and p, and p."""
             one = 2 ** (frac + 2)
             return " ".join(wide(n, exponent - frac - 2) for n in (one - 2, one - 1, one))
 
@@ -131,7 +130,7 @@ class FloatProof:
             for row in range(1, rows + 1) for wire in ("sum", "carry", "divisor"))
 
         def digits(first: str, sign: str) -> str:
-            """Returns the digits of a sign, the first digit on top."""
+            """Returns the concatenated quotient digits of one sign, the first digit most significant."""
             return functools.reduce(lambda upper, row: f"(concat {upper} free_{sign}_o_{row})",
                                     range(1, rows + 1), first)
 
@@ -157,7 +156,7 @@ class FloatProof:
             "QUOTIENT_SHIFT": 2 * rows + 1, "QX": frac + 2 * rows + 2,
             "CUT_FROM_2": 2 * rows + 2 - self.quotient_bits,
             "CUT_FROM_1": 2 * rows + 1 - self.quotient_bits,
-            # sticky: exponents twice as far apart as those of quotients
+            # sticky: range of exponents twice as wide as that of quotients
             "STICKY_PAD": wide_frac - 2 * rows - 10,
             "STICKY_FROM": wide_bias + wide_frac - 2 - 2 * rows - 2 ** (exp + 1),
             "STICKY_TO": wide_bias + wide_frac - 2 - 2 * rows + 2 ** (exp + 1),
@@ -170,7 +169,7 @@ class FloatProof:
         }
 
     def files(self) -> list[pathlib.Path]:
-        """Returns the files of the specification, then that of the claim."""
+        """Returns the files of the specification, then the file of the claim."""
         parts = OPERATIONS[self.operation].specification
         claim = self.operation
         if self.is_narrow:
@@ -179,16 +178,16 @@ class FloatProof:
 
     @property
     def is_narrow(self) -> bool:
-        """Whether the claim rounds to a format that the solver does not know."""
+        """Whether the claim rounds to a format that the solver does not support."""
         return self.format in NARROW_FORMATS and self.operation in NARROW_CLAIMS
 
     def texts(self) -> list[str]:
-        """Returns the contents of `files`, with numbers in place of placeholders."""
+        """Returns the contents of `files` with placeholders replaced by `numbers`."""
         numbers = self.numbers()
         return [string.Template(file.read_text()).substitute(numbers) for file in self.files()]
 
     def sources(self) -> list[pathlib.Path]:
-        """Returns the RTL, with contracts in place of the modules that they replace."""
+        """Returns the RTL files, with contracts in place of the modules that they replace."""
         contracts = OPERATIONS[self.operation].contracts
         files = [file for file in cores.files("fp") if file.stem not in contracts]
         return files + [FLOAT / "contracts" / f"{module}.sv" for module in contracts]
@@ -215,7 +214,7 @@ PROOFS = [
 
 
 def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
-    """Returns a query without its last assertions, and the names of the module's ports."""
+    """Returns a query without its final `assert` commands, and the names of the module's ports."""
     *specification, claim = one.texts()
     top = OPERATIONS[one.operation].top
     named, wires = smt.ports(model, top) if top else ("", [])
@@ -223,7 +222,7 @@ def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
 
 
 def proven(one: FloatProof) -> tuple[dict, bool]:
-    """Proves a claim; raises ToolFailed, with the operands, if it does not hold."""
+    """Proves a claim. Raises Refuted, with the operands, if the claim does not hold, and ToolFailed if the solver gives up."""
     folder = store.OUT / "proofs" / f"float.{one.name}"
     wanted = store.key([*one.sources(), smt.FREE, FLOAT / "solve.py"],
                        yosys.version(), smt.version(), one.parameters, one.texts())
@@ -246,7 +245,7 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
 
 
 def lemma(name: str) -> tuple[dict, bool]:
-    """Proves a lemma about numbers: z3 must answer "unsat", or "sat" where the question says so."""
+    """Proves a lemma about numbers: z3 must answer "unsat" to every `check-sat`, or "sat" to those with the comment "; sat"."""
     file = FLOAT / "lemmas" / f"{name}.smt2"
     folder = store.OUT / "proofs" / f"float.lemma.{name}"
 

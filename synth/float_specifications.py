@@ -9,17 +9,17 @@ from synth.float_proofs import FLOAT, FORMATS, NARROW_FORMATS, FloatProof
 SPECIFICATIONS = [FloatProof(operation, name)
                   for operation in ("add", "multiply", "divide", "compare")
                   for name in FORMATS | NARROW_FORMATS]
-VECTORS = 125_000  # for each of these
-BATCH = 5000  # evaluated in one query
+VECTORS = 125_000  # test vectors per specification
+BATCH = 5000  # vectors evaluated in one query
 
-# The operations that MPFR computes for each: FloatOp of sim/fp/float_format.h, and `second` of vectors/.
+# The operations that MPFR computes for each specification: number in FloatOp of sim/fp/float_format.h -> argument `second` in vectors/.
 ASKED = {"add": {0: "false", 1: "true"}, "multiply": {2: "false"}, "divide": {3: "false"},
          "compare": {4: "false", 6: "true"}}
 CODES = {"binary16": ("<H", "<e", "<f", "<I"), "binary32": ("<I", "<f", "<d", "<Q")}
 
 
 def wide_word(word: int, name: str) -> str:
-    """Returns the word of a number in the next wider format."""
+    """Converts a word of format `name` to the next wider format; returns the SMT-LIB literal of its bits."""
     if name == "bfloat16":
         return wide_word(word << 16, "binary32")
     narrow, as_narrow, as_wide, wide = CODES[name]
@@ -29,8 +29,8 @@ def wide_word(word: int, name: str) -> str:
 
 
 def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]:
-    """Evaluates a specification, by the solver, on `count` operations with MPFR's results, and checks that it refuses one of them with a
-    bit of the result changed."""
+    """Checks, by the solver, that a specification accepts MPFR's results of `count` operations. Also checks that it rejects a result with
+    one bit changed."""
     folder = store.OUT / "proofs" / f"float.specification.{one.name}"
     vectors = FLOAT / "vectors" / f"{one.operation}{'_narrow' if one.is_narrow else ''}.smt2"
     numbers = one.numbers()

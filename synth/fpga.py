@@ -1,7 +1,7 @@
-"""Places and routes one design on an FPGA, between registers, and reads its clock rate.
+"""Places and routes designs on FPGAs and reads their clock rates between registers.
 
-A design without a clock, or with more ports than a package has pins, is put between registers first.
-`python3 -m synth.fpga` does so with the units (`make fpga`) and prints the table.
+A design without a clock, or with more port bits than a package has pins, is first wrapped in input and output registers.
+`python3 -m synth.fpga` places the units (`make fpga`) and prints their table.
 """
 
 import argparse
@@ -19,17 +19,17 @@ from synth import catalogue, runner, scripts, store, tables, tools, yosys
 from synth.catalogue import Design, Fpga
 
 
-MOST_PINS = 150  # as many as every package here has
+MOST_PINS = 150  # every package used here has at least this many pins
 
 
 def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
-    """Returns LUTs, registers, multipliers, block RAMs and MHz between registers, of the median seed, with the MHz of all seeds as
-    `rates`; and whether all was kept."""
+    """Returns the figures of `reported` for the seed with the median clock rate, with `rates`, the MHz of all seeds in rising order; and
+    whether all results were kept from earlier runs."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     wanted = store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts,
                        inspect.getsource(registered), inspect.getsource(_map))
     netlist, mapped = store.cached(folder, wanted, lambda: step("mapping", folder / "yosys.log", lambda: _map(design, fpga, folder)))
-    # A placement is kept under the netlist's contents, so that changes of the RTL that do not change the netlist reuse it.
+    # The key of a kept placement has the netlist's hash: after RTL changes that leave the netlist unchanged, the placement is reused.
     pins = [tools.ROOT / word for word in fpga.arguments if word.endswith(".lpf")]
     wanted = store.key(pins, netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz, inspect.getsource(_place))
     runs = [store.cached(folder / f"seed-{seed}", wanted,
@@ -40,7 +40,7 @@ def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
 
 
 def step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
-    """Returns the result of `work`, after printing what begins and where to watch it."""
+    """Prints which step begins and the name of its log file, then returns the result of `work`."""
     print(f"{what}: {log.relative_to(tools.ROOT)}", file=sys.stderr, flush=True)
     return work()
 
@@ -57,12 +57,12 @@ def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
 
 
 def digest(netlist: pathlib.Path) -> str:
-    """Returns a hash of Yosys's netlist, without the lines of RTL that it names."""
+    """Returns a hash of Yosys's netlist that ignores references to RTL lines."""
     return hashlib.sha256(re.sub(r'"src": "[^"]*"', "", netlist.read_text()).encode()).hexdigest()
 
 
 def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
-    # Relative names, for the ECP5's nextpnr runs in a sandbox with a /tmp of its own.
+    # The names are relative because nextpnr for the ECP5 runs in a sandbox with a /tmp of its own.
     netlist, report, config = ((folder / name).relative_to(tools.ROOT) for name in (
         "netlist.json", f"seed-{seed}/placed.json", f"seed-{seed}/board.config"))
     tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed, "--freq", fpga.wanted_mhz, "--timing-allow-fail",
@@ -71,7 +71,7 @@ def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
 
 
 def reported(report: dict, fpga: Fpga) -> dict:
-    """Reads from nextpnr's report: cells, MHz of the fastest clock, or of `fpga.clock`, and its slowest path."""
+    """Returns figures of nextpnr's report: numbers of cells, MHz of the clock `fpga.clock` ("": of the fastest clock), slowest path."""
     used = {name: count["used"] for name, count in report["utilization"].items() if count["used"]}
     counts = (used.get(cell, 0) for cell in fpga.cells)
     rates = [found["achieved"] for name, found in report["fmax"].items() if fpga.clock in name]
@@ -80,7 +80,7 @@ def reported(report: dict, fpga: Fpga) -> dict:
 
 
 def slowest_path(paths: list[dict], clock: str = "") -> dict:
-    """Returns where the slowest path between registers (of `clock`) begins and ends, and its ns in logic (with registers) and in wires."""
+    """Returns the slowest path between registers of `clock` ("": of any clock): both ends, ns in logic with registers, ns in wires."""
     path = next(path["path"] for path in paths if path["from"] == path["to"] and clock in path["from"])
     ns = {kind: sum(step["delay"] for step in path if (step["type"] == "routing") == (kind == "wires"))
           for kind in ("logic", "wires")}
@@ -89,7 +89,7 @@ def slowest_path(paths: list[dict], clock: str = "") -> dict:
 
 
 def register(cell: str) -> str:
-    """Returns the signal in a register or DSP block that Yosys named: u_divider.norm_q for u_divider.norm_q_TRELLIS_FF_Q_7."""
+    """Returns the signal in a register or DSP block, from the cell's name: u_divider.norm_q for u_divider.norm_q_TRELLIS_FF_Q_7."""
     return re.sub(r"_(TRELLIS_FF|SB_DFF|MULT18X18D|DP16KD|LUT4|CCU2C|PFUMX|L6MUX21).*", "", cell)
 
 
@@ -99,10 +99,10 @@ def port_widths(top: str, netlist: dict) -> list[tuple[str, str, int]]:
 
 
 def registered(design: Design, ports: list[tuple[str, str, int]]) -> str:
-    """Verilog of a wrapper that puts registers at all inputs and outputs of `design`.
+    """Returns the Verilog of a wrapper with registers at all inputs and outputs of `design`.
 
-    The ports of the wrapper are a shift register's ends: a device has fewer pins than a wide design
-    has bits, and what isn't used must not be optimised away.
+    The registers form shift registers, whose ends are the wrapper's ports. A wide design has more bits than a device has pins, and
+    unconnected ports would be optimised away.
     """
     clock = [port for port in ports if port[1] == design.clock]
     low = {"input": 0, "output": 0}
@@ -163,7 +163,7 @@ def period(top: str) -> int:
 
 
 def table(units: list[tuple[tuple, dict]]) -> str:
-    """Returns the table of units (of catalogue.fpga_units) and their results of place()."""
+    """Returns the table of units (from catalogue.fpga_units) and their results of place()."""
     heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "MHz (least to most)",
              "million tests/s"]
     rows = []
@@ -175,7 +175,7 @@ def table(units: list[tuple[tuple, dict]]) -> str:
     return f"{tables.markdown(heads, rows)}\n{tables.measured('make fpga')}"
 
 
-# Parameters of units, in words.
+# Descriptions of units' parameters.
 NAMES = {("QuotientBits", "21"): "21-bit quotients"}
 
 

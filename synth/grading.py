@@ -1,4 +1,4 @@
-"""The paper's adders in its own delay model, and the optimal group widths in that model, by dynamic programming."""
+"""Computes the delays of the paper's adders in the paper's delay model, and by dynamic programming the best group widths in this model."""
 
 from synth import catalogue, structure, tables
 from synth.catalogue import Design
@@ -10,12 +10,12 @@ Grouping = tuple[int, ...]  # widths, least significant group first
 
 
 def best_by_model(width: int, counting: Counting) -> tuple[float, Grouping]:
-    """Returns the least delay of a sum of `width` bits, in full-adder delays, and a grouping that has it.
+    """Returns the least delay of a carry-select sum of `width` bits, in full-adder delays, and a grouping with this delay.
 
-    Groups add by ripple. Of several groupings, the one with the least hardware is returned: the widest lowest group (which
-    needs only one sum), then the fewest groups.
+    Groups add by ripple carry. Among several groupings, returns the one with the least hardware: the widest lowest group (because this
+    group needs only one sum), then the fewest groups.
     """
-    low, high = 0, 2 * width  # in half delays: every counting has steps of 1/2
+    low, high = 0, 2 * width  # in half full-adder delays: all delays are multiples of 1/2
     while low < high:
         middle = (low + high) // 2
         if _within(width, counting, middle / 2) is None:
@@ -26,9 +26,9 @@ def best_by_model(width: int, counting: Counting) -> tuple[float, Grouping]:
 
 
 def _within(width: int, counting: Counting, limit: float) -> Grouping | None:
-    """Returns the cheapest grouping whose sum bits all come by `limit`; None if there is none."""
+    """Returns the cheapest grouping whose sum bits are all ready by `limit` (full-adder delays), or None."""
     for first in range(min(width, int(limit)), 0, -1):
-        # Position -> (earliest carry into it, groups below it), after n groups.
+        # Bit position -> (earliest time of the carry into this bit, groups below this bit), after n groups.
         carries: dict[int, tuple[float, Grouping]] = {first: (first, (first,))}
         for _ in range(MAX_GROUPS):
             if width in carries:
@@ -59,7 +59,7 @@ def graded(groups: Grouping, look_ahead: bool, width: int = WIDTH) -> Design:
 
 
 def model_table() -> str:
-    """Returns a table of the adders' delays in each counting, beside the paper's, and the least possible ones."""
+    """Returns a table of the adders' delays: as the paper states them, in each counting, and the least possible delays."""
     optimum = best_by_model(WIDTH, structure.COUNTINGS[1])[1]
     rows = []
     for name, design, paper in [

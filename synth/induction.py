@@ -1,7 +1,7 @@
 """Proves a module's assertions for all inputs, by induction over clocks, with Bitwuzla.
 
-The module is SMT-LIB as Yosys's `write_smt2 -stbv` writes it: states, the possible first ones, the transitions between them, and what is
-assumed, asserted and covered in a state.
+The module is SMT-LIB text from Yosys's `write_smt2 -stbv`: states, initial states, transitions, and the assumptions, assertions and covers
+of a state.
 """
 
 import dataclasses
@@ -19,12 +19,12 @@ class Model:
     text: str
 
     def listed(self, what: str) -> list[tuple[str, str]]:
-        """Returns the numbers and names of its "assert" or "cover" statements; names and widths of "input", "wire"."""
+        """Returns number and name of each "assert", "assume" or "cover" statement, or name and width of each "input" or "wire"."""
         return re.findall(rf"^; yosys-smt2-{what} (\S+) (.*)$", self.text, re.M)
 
     def functions(self) -> tuple[list[str], list[str]]:
-        """Returns declarations of the functions of contracts/functions.sv, and the equations for every `state`: wire X_result is the
-        function X of wire X_operands."""
+        """Returns SMT-LIB for the uninterpreted functions of contracts/functions.sv: their declarations, and the equations for a `state`.
+        An equation says that wire X_result is function X of wire X_operands."""
         width = dict(self.listed("wire"))
         declared, equal = {}, []
         for result in width:
@@ -39,7 +39,7 @@ class Model:
         return list(declared.values()), equal
 
     def clocks(self, count: int) -> str:
-        """Returns `count` states, each the successor of the one before; every assumption holds in each."""
+        """Returns SMT-LIB for `count` states s0, s1, ... Each is a successor of the state before. All assumptions hold in each state."""
         declared, equal = self.functions()
         lines = ["(set-logic QF_UFBV)", self.text, *declared,
                  f"(define-fun functions ((state |{self.top}_s|)) Bool (and true true {' '.join(equal)}))"]
@@ -49,7 +49,7 @@ class Model:
         return "\n".join(lines) + "\n"
 
     def first(self) -> str:
-        """Returns the assertion that the first state is one after power-up."""
+        """Returns the SMT-LIB assertion that s0 is an initial state."""
         return f"(assert (|{self.top}_i| s0))\n"
 
     def always(self, clocks: range) -> str:
@@ -58,8 +58,8 @@ class Model:
 
 
 def _refuse(model: Model, file: pathlib.Path, text: str, clocks: range) -> None:
-    """Raises Refuted, with the broken assertions and the inputs, if a state of `clocks` breaks an assertion, and ToolFailed if
-    the solver does not know."""
+    """Raises Refuted, with the broken assertions and the inputs, if an assertion can fail in a state of `clocks`. Raises ToolFailed if the
+    solver cannot decide."""
     asserts, inputs = model.listed("assert"), model.listed("input")
     last = clocks[-1]
     terms = [f"(|{model.top}_a {number}| s{last})" for number, _ in asserts]
@@ -75,11 +75,10 @@ def _refuse(model: Model, file: pathlib.Path, text: str, clocks: range) -> None:
 
 
 def holds(top: str, smt2: pathlib.Path, steps: int, reach: int) -> None:
-    """Raises Refuted or ToolFailed unless every assertion holds in the first `steps` clocks from power-up, and after any
-    `steps` clocks in which all held; and unless such clocks exist, and each `cover` is reached within `reach`
-    clocks. A module that assumes something must cover something, as contradictory assumptions would prove
-    anything.
-    `steps` = 0: it has no registers."""
+    """Proves all assertions by induction: they hold in the first `steps` clocks from power-up, and in the clock after any `steps` clocks in
+    which they held. Also checks that a run of `steps` clocks from power-up exists, and that every `cover` is reached within `reach` clocks.
+    A module with assumptions must have a `cover`, because contradictory assumptions would prove anything.
+    `steps` = 0: the module has no registers. Raises Refuted or ToolFailed if a check fails."""
     model = Model(top, smt2.read_text())
     if not model.listed("assert"):
         raise tools.ToolFailed(f"{top}: found no assertion, expected one or more")

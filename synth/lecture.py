@@ -1,7 +1,7 @@
-"""Makes a page for a lecture: each kind of adder, a Booth multiplication and a float addition, drawn from their elaborated netlists,
-with the values for chosen operands.
+"""Makes a page for a lecture that shows each kind of adder, a Booth multiplication and a float addition with chosen operands.
 
-`python3 -m synth.lecture`: see `--help`. All values of signals on the page come from the netlists (structure.evaluate).
+`python3 -m synth.lecture`: see `--help`. The adders are drawn from their elaborated netlists. All signal values on the page are computed
+from the netlists (structure.evaluate).
 """
 
 import argparse
@@ -17,7 +17,7 @@ from synth.structure import evaluate, word
 
 MOST_BITS = 16  # wider adders do not fit on a page
 
-# Delays of cells and of a gate, in full-adder delays: a full adder's sum is two gates deep.
+# Delays of cells, and of a gate, in full-adder delays. A gate counts 0.5, because a full adder's sum is two gates deep.
 DELAYS = {"FULL_ADDER": 1.0, "MULTIPLEXER": 1.0}
 GATE = 0.5
 SYMBOLS = {"FULL_ADDER": "FA", "MULTIPLEXER": "mux", "$_AND_": "and", "$_OR_": "or", "$_XOR_": "xor", "$_NOT_": "not"}
@@ -32,7 +32,7 @@ KINDS = {
 
 
 class AdderDrawing:
-    """Positions of an adder's cells on the page: columns by the highest operand bit that a cell depends on, rows by time."""
+    """Positions of an adder's cells on the page. Column: the highest operand bit that a cell depends on. Row: arrival time."""
 
     def __init__(self, module: dict) -> None:
         self.module = module
@@ -40,7 +40,7 @@ class AdderDrawing:
         self.arrival, self.slowest = structure.arrivals(module, DELAYS, GATE)
         self.cells = list(structure.in_order(module))
         slots = collections.Counter()
-        self.at = []  # of each cell: column, arrival time, place among the cells there
+        self.at = []  # per cell: column, arrival time, index among the cells with the same column and time
         for cell in self.cells:
             outs = structure.outputs(cell)
             column, arrival = max(self.top.get(bit, 0) for bit in structure.inputs(cell)), self.arrival[outs[0]]
@@ -55,7 +55,7 @@ class AdderDrawing:
         self.middle = {place: self.left[place] + SLOT * most[place] // 2 for place in range(width)}
 
     def on_slowest_path(self) -> set[int]:
-        """Returns the cells, by identity, on one of the longest paths."""
+        """Returns the id() of each cell on one of the longest paths."""
         outputs = [bit for port in ("sum_o", "carry_o") for bit in self.module["ports"][port]["bits"]]
         bit, found = max(outputs, key=lambda bit: self.arrival.get(bit, 0.0)), set()
         while bit in self.slowest:
@@ -65,7 +65,7 @@ class AdderDrawing:
         return found
 
     def svg(self, values: dict[object, int]) -> str:
-        """Returns the drawing as SVG, with `values`, as returned by evaluate(), on its wires."""
+        """Returns the drawing as SVG. `values`: the values to show on the wires, from evaluate()."""
         ports = self.module["ports"]
         below = MARGIN + 44 + ROW * len(self.rows)
         places = {}  # bit -> where its wire begins
@@ -105,32 +105,32 @@ class AdderDrawing:
 
 
 def text(x: float, y: float, words: str, kind: str) -> str:
-    """Returns a text that is centred at x."""
+    """Returns an SVG text, centred at x. `kind`: its class."""
     return f'<text class="{kind}" x="{x}" y="{y}">{html.escape(words)}</text>'
 
 
 def wire(begin: tuple[float, float], end: tuple[float, float], value: int) -> str:
-    """Returns a line that begins and ends vertically."""
+    """Returns an SVG curve that begins and ends vertically."""
     (x0, y0), (x1, y1) = begin, end
     bend = min(24.0, (y1 - y0) / 2)
     return f'<path class="w{value}" d="M{x0} {y0}C{x0} {y0 + bend} {x1} {y1 - bend} {x1} {y1}"/>'
 
 
 def binary(number: int, width: int, marked: range = range(0)) -> str:
-    """Returns a number in groups of four bits, from the lowest; the bits of places `marked` are in <b>."""
+    """Returns a binary number as HTML, grouped by four bits from the lowest. The bits at the positions `marked` are in <b>."""
     bits = [f"<b>{number >> place & 1}</b>" if place in marked else f"{number >> place & 1}" for place in range(width)]
     groups = ["".join(reversed(bits[k:k + 4])) for k in range(0, width, 4)]
     return "\u2009".join(reversed(groups)).replace("</b><b>", "")
 
 
 def table(header: list[str], rows: list[list[str]]) -> str:
-    """Returns a table whose cells are HTML already."""
+    """Returns an HTML table. `header` and `rows` must be HTML."""
     line = lambda tag, cells: "<tr>" + "".join(f"<{tag}>{cell}</{tag}>" for cell in cells) + "</tr>"  # noqa: E731
     return "<table>" + line("th", header) + "".join(line("td", row) for row in rows) + "</table>"
 
 
 def adder_section(kind: str, given: argparse.Namespace) -> str:
-    """Returns the section of one kind of adder, with the operands in it."""
+    """Returns the section of one kind of adder, drawn with the values of the operands."""
     design = catalogue.design("adder", adder=kind, widths=given.groups if kind == "graded" else None, Width=given.width,
                               look_ahead=None if kind in ("ripple", "prefix") else False)
     module = structure.without_constants(structure.netlist(design))
@@ -146,7 +146,7 @@ def adder_section(kind: str, given: argparse.Namespace) -> str:
 
 
 def booth_section(given: argparse.Namespace) -> str:
-    """Returns the section of the multiplication: digits, partial products, the tree's rows, the last addition."""
+    """Returns the section of the multiplication: digits, partial products, rows of the carry-save tree, final addition."""
     width = given.width + given.width % 2
     module = structure.netlist(catalogue.design("booth_multiplier", Width=width))
     values = evaluate(module, {"a_i": given.a, "b_i": given.b})
@@ -248,7 +248,7 @@ def page(given: argparse.Namespace) -> str:
 
 
 def binary16(text: str) -> float:
-    """The `type` of an option: a number within binary16's range."""
+    """Parses an option's value: a number in the range of binary16."""
     try:
         struct.pack("<e", float(text))
     except (OverflowError, ValueError):

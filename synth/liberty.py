@@ -1,4 +1,4 @@
-"""Reads Liberty files: cells with their pins and timing tables, and where each group stands in the text."""
+"""Reads Liberty files: groups (cells, pins, timing tables, ...) with their attributes and their positions in the text."""
 
 import dataclasses
 import functools
@@ -11,28 +11,28 @@ TOKEN = re.compile(r'/\*.*?\*/|\\\s*\n|"(?:[^"\\]|\\.)*"|[{}();:]|[^\s{}();:"\\]
 
 @dataclasses.dataclass
 class Group:
-    """`kind (name) { ... }`: attributes by name (of several, the last one), and the groups in it."""
+    """A group `kind (name) { ... }`: its attributes by name (the last of equal names) and its inner groups."""
 
     kind: str
     name: str
-    begin: int  # place in the text, in characters
+    begin: int  # position in the text, in characters
     end: int = 0
     attributes: dict[str, str] = dataclasses.field(default_factory=dict)
     groups: list["Group"] = dataclasses.field(default_factory=list)
 
     def of(self, kind: str) -> Iterator["Group"]:
-        """Returns the groups of that kind."""
+        """Returns the inner groups of `kind`."""
         return (group for group in self.groups if group.kind == kind)
 
     def number(self, name: str) -> float:
-        """Returns an attribute as a number; 0 if there is none."""
+        """Returns an attribute as a number; 0 if the attribute is missing."""
         return float(self.attributes.get(name, 0))
 
 
 def parse(text: str, name: str) -> Group:
-    """Returns the library in a Liberty file's text. Raises ValueError, which calls the file `name`."""
+    """Returns the library in a Liberty file's text. Raises ValueError if the text is malformed; the message names the file `name`."""
     top = Group("", "", 0)
-    stack, words = [top], []  # words: of the statement that has not ended
+    stack, words = [top], []  # words: of the current statement
     tokens = (found for found in TOKEN.finditer(text) if found[0][0] not in "/\\" or found[0][1:2] not in "*\n \t\r")
     for found in tokens:
         token = found[0]
@@ -51,7 +51,7 @@ def parse(text: str, name: str) -> Group:
                     raise ValueError(f"{name}:{_line(text, found)}: found }}, expected a group that it ends")
                 stack.pop().end = found.end()
         else:
-            # The end of a line ends an attribute, too, if its semicolon is missing.
+            # An attribute without a semicolon ends at the end of its line.
             if len(words) > 2 and words[1][0] == ":" and "\n" in text[words[-1][1]:found.start()] and token not in "():":
                 _attribute(stack[-1], words)
                 words = []

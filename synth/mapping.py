@@ -1,4 +1,4 @@
-"""Maps one design to one standard-cell library by one flow, and times it."""
+"""Maps one design to one standard-cell library by one flow, and times the result."""
 
 import collections
 import functools
@@ -9,7 +9,7 @@ import re
 from synth import scripts, store, tools, yosys
 from synth.catalogue import Design, Library
 
-# One step of OpenSTA's path: cell or net load, slew, delay, arrival, edge, pin, cell type.
+# One step of a path in OpenSTA's report: load, slew, delay, arrival, edge, pin, cell type.
 PATH_STEP = re.compile(
     r"^\s*(?:[\d.]+\s+)*?(?P<delay>-?[\d.]+)\s+(?P<arrival>-?[\d.]+) "
     r"[v^] (?P<pin>\S+) \((?P<cell>\w+)\)$", re.M)
@@ -17,12 +17,12 @@ PATH_STEP = re.compile(
 
 @functools.cache
 def flow_facts() -> tuple[str, ...]:
-    """Returns what every mapping depends on besides the design: the tools' versions."""
+    """Returns the versions of the tools that every mapping uses."""
     return yosys.version(), tools.version("sta")
 
 
 def files() -> list[pathlib.Path]:
-    """Returns the files that define how a netlist is made and timed."""
+    """Returns the files of synth/ that define how a netlist is made and timed."""
     names = ("comparisons.v", "structure.v", "known_inputs.v", "osu_cells.v", "kept_memory.v", "kept_memories.v", "kept_enables.v", "timing.tcl",
              "constraints.sdc", *set(scripts.ABC_SCRIPTS.values()))
     return [*scripts.FILES, *sorted(tools.FLOWS / name for name in names)]
@@ -37,7 +37,7 @@ def top_module(file: pathlib.Path) -> dict:
 
 def synthesise(design: Design, library: Library, flow: str,
                root: pathlib.Path | None = None) -> tuple[dict, bool]:
-    """Returns area (liberty units), delay (ns), cells and critical path; and whether they were cached."""
+    """Returns area (Liberty units), delay (ns), cells and critical path; and whether this result was cached."""
     folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
     read = [*design.sources(flow == "cells"), library.liberty, *files()]
     wanted = store.key(read, flow_facts(), design.facts, design.clock, library, flow)
@@ -63,7 +63,7 @@ def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Pa
         spef: pathlib.Path | None = None, clock: str = "") -> str:
     """Returns OpenSTA's report of the slowest path of `netlist`.
 
-    `spef`: its wires; `clock`: the clock's port, if `netlist` names it differently from the design.
+    `spef`: file of the wires' parasitics. `clock`: the clock port of `netlist`, if its name differs from the design's.
     """
     return tools.run(["sta", "-exit", tools.FLOWS / "timing.tcl"], log, {
         "LIBERTY": str(library.liberty), "NETLIST": str(netlist), "TOP": design.top,
@@ -73,14 +73,14 @@ def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Pa
 
 
 def blocks(design: Design) -> list[str]:
-    """Returns the modules that flow `blocks` maps on their own: those of the design's folder, except subsystems, which only join others and
-    count as the top's."""
+    """Returns the modules that flow `blocks` maps on their own: the modules of the design's folder except subsystems. Subsystems only
+    connect other modules and count as parts of the top."""
     return [file.stem for file in design.sources() if file.stem != design.top and not file.stem.endswith(("_pkg", "_subsystem"))
             and file.parent.name == design.folder]
 
 
 def kept_memories(dump: str) -> dict[str, int]:
-    """Returns the bits of the memories in a dump of cells, by module; "" is the module of a dump that names none."""
+    """Returns the bits of the memories in a Yosys dump of cells, by module; module "" if the dump names no module."""
     bits, module = collections.Counter(), ""
     for header, size in re.findall(r"^module \\?(\S+)|parameter \\BITS (\d+)", dump, re.M):
         module = header or module
@@ -89,15 +89,15 @@ def kept_memories(dump: str) -> dict[str, int]:
 
 
 def statistics(file: pathlib.Path) -> dict[str, dict]:
-    """Returns for each module its area (liberty units) and cells by type, including submodules, from Yosys's `stat -json`."""
+    """Returns, from Yosys's `stat -json`, the area (Liberty units) and cells by type of each module, including submodules."""
     return {name.removeprefix("\\"): {"area": 0, **module} for name, module in json.loads(file.read_text())["modules"].items()}
 
 
 def block_costs(modules: dict[str, dict], memories: dict[str, int]) -> dict[str, dict]:
-    """Returns for each kind of block in the top the number of its instances, and their total area (liberty units) and bits of
-    memory, including submodules.
+    """Returns, for each kind of block in the top, the number of instances, their total area (Liberty units) and their total memory bits.
+    Both totals include submodules.
 
-    `modules`: from `statistics`, before the modules are joined; `memories`: from kept_memories.
+    `modules`: from `statistics`, before flattening. `memories`: from `kept_memories`.
     """
     inside = {name: {cell: count for cell, count in module["num_cells_by_type"].items() if cell in modules}
               for name, module in modules.items()}
@@ -117,7 +117,7 @@ def block_costs(modules: dict[str, dict], memories: dict[str, int]) -> dict[str,
 
 
 def registers(netlist: str, path: list[dict]) -> dict[str, str]:
-    """Returns the signals in the first and the last register of a path, or the ports at which it begins or ends."""
+    """Returns both ends of a path: for a register, the name of its signal; for a port, the port's name."""
     def name(pin: str) -> str:
         instance, _, port = pin.partition("/")
         if not port:
@@ -129,9 +129,9 @@ def registers(netlist: str, path: list[dict]) -> dict[str, str]:
 
 
 def critical_path(report: str) -> tuple[float, list[dict]]:
-    """Returns the slowest path in OpenSTA's report: its length in ns, set-up time included, and its steps.
+    """Returns the length in ns, including set-up time, and the steps of the slowest path in OpenSTA's report.
 
-    Raises ToolFailed if the report has no path, as for a design that was not timed.
+    Raises ToolFailed if the report has no path.
     """
     arrival = re.search(r"^\s*(-?[\d.]+)\s+data arrival time", report, re.M)
     if arrival is None:

@@ -1,4 +1,4 @@
-"""Measures designs on all targets: the jobs, and their results as flat records."""
+"""Measures designs on all targets and returns the results as flat records."""
 
 import dataclasses
 import functools
@@ -11,17 +11,17 @@ from synth.catalogue import FPGAS, Library, Row
 
 @dataclasses.dataclass(frozen=True)
 class Targets:
-    """The names of libraries and FPGAs to measure on, and the number of jobs at once."""
+    """The names of the libraries and FPGAs to measure on, and the number of parallel jobs."""
 
     names: tuple[str, ...]
     workers: int = 2
 
 
 def available(names: list[str] | None, everything: bool = True, one: bool = False) -> tuple[str, ...]:
-    """Returns the targets: `names`, if given; else a user's library alone; else for `everything` all libraries and the FPGAs
-    whose placers are installed, for `one` design all libraries, for the main designs the first.
+    """Returns the targets: `names`, if not empty; else a user's library, if there is one; else, with `everything`, all libraries and the
+    FPGAs whose placers are installed; else, with `one`, all libraries; else the first library.
 
-    Raises MissingTool for a tool of a target in `names` and for the standard-cell tools, ValueError for an unknown name.
+    Raises MissingTool if a tool of a returned target is missing, and ValueError for an unknown name.
     """
     yosys.folder()
     known, libraries = catalogue.targets(), catalogue.LIBRARIES
@@ -45,7 +45,7 @@ def available(names: list[str] | None, everything: bool = True, one: bool = Fals
 
 
 def cost(record: dict | None) -> str:
-    """Returns `area / ns` or `LUTs / MHz`."""
+    """Returns the text `area / ns` or `LUTs / MHz` for a record, "-" for None."""
     if record is None:
         return "-"
     if "mhz" in record:
@@ -54,9 +54,9 @@ def cost(record: dict | None) -> str:
 
 
 def measure(rows: list[Row], targets: Targets, failures: list[str], quiet: bool = False) -> Iterator[tuple[Row, list[dict]]]:
-    """Yields each row with its records, one for each target and flow that did not fail, once all its jobs have ended.
+    """Yields each row with its records as soon as the row's jobs have ended: a record per target and flow that did not fail.
 
-    `quiet`: without lines of progress."""
+    `quiet`: prints no progress."""
     todo = [(row, target, flow) for row in rows for name, target in catalogue.targets().items() if name in targets.names
             for flow in row.flows_on(target)]
     results = runner.run([runner.Job(

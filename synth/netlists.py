@@ -1,4 +1,4 @@
-"""Compares a mapped netlist with the RTL it was made of: by ABC if it has no registers, else by simulation, on the same vectors."""
+"""Compares a mapped netlist with its RTL: by ABC's equivalence check if there are no registers, else by simulation on equal vectors."""
 
 import json
 import pathlib
@@ -8,11 +8,11 @@ from synth import mapping, scripts, store, tools, yosys
 from synth.catalogue import Design, Library
 
 PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
-SECONDS = 600  # for ABC, on one netlist
+SECONDS = 600  # time limit of ABC for one netlist
 
 
 def equal(design: Design, library: Library, flow: str) -> tuple[dict, bool]:
-    """Raises ToolFailed unless ABC proves that the netlist computes what its RTL does. The design has no registers."""
+    """Proves by ABC that the netlist of a design without registers is equivalent to its RTL. Raises ToolFailed if ABC does not prove it."""
     folder = store.OUT / "netlists" / f"{design.name}.{library.name}.{flow}"
     files = [*design.sources(), library.liberty, pathlib.Path(__file__), *mapping.files()]
     wanted = store.key(files, mapping.flow_facts(), design.facts, library, flow)
@@ -20,7 +20,7 @@ def equal(design: Design, library: Library, flow: str) -> tuple[dict, bool]:
     def work() -> dict:
         mapping.synthesise(design, library, flow)
         run = store.OUT / "runs" / f"{design.name}.{library.name}.{flow}"
-        # ABC cannot match two expansions of a product: here both sides begin with that of the flows.
+        # ABC cannot match two different expansions of a product. The RTL is therefore expanded like the netlist, by alumacc.
         expand = "alumacc\n" if design.top == "multiplier" else ""
         gates = "flatten -noscopeinfo\nopt_expr\ntechmap\nopt_clean -purge\nselect -assert-none t:$*FF*\nwrite_blif"
         yosys.run(f"""{scripts.elaborated(design)}
@@ -41,14 +41,14 @@ proc
 
 
 def cells(library: Library) -> str:
-    """Returns commands that read the library's combinational cells and flip-flops, as their Liberty functions define them."""
+    """Returns Yosys commands that read the library's combinational cells and flip-flops, with the functions stated in the Liberty file."""
     return f"""read_liberty -ignore_miss_func -ignore_miss_dir -ignore_miss_data_latch {library.liberty}
 delete LATCH TBUFX1 TBUFX2 PAD*
 proc"""
 
 
 def agree(design: Design, library: Library, flow: str, vectors: int) -> tuple[dict, bool]:
-    """Simulates both on `vectors` vectors. Raises ToolFailed if an output bit differs."""
+    """Simulates the netlist and the RTL on `vectors` input vectors. Raises ToolFailed if an output bit differs."""
     folder = store.OUT / "netlists" / f"{design.name}.{library.name}.{flow}"
     files = [*design.sources(), library.liberty, PROOFS / "netlist_agrees.cpp", pathlib.Path(__file__), *mapping.files()]
     wanted = store.key(files, mapping.flow_facts(), tools.version("verilator"), design.facts,
@@ -60,7 +60,7 @@ def _agree(design: Design, library: Library, flow: str, vectors: int,
            folder: pathlib.Path) -> dict:
     mapping.synthesise(design, library, flow)
     run = store.OUT / "runs" / f"{design.name}.{library.name}.{flow}"
-    # Writes the cells as the library's own functions define them, and the netlist under another name.
+    # Writes Verilog of the library's cells, from their functions in the Liberty file, and of the netlist, renamed to `netlist`.
     yosys.run(f"""{cells(library)}
 write_verilog -noattr {folder}/cells.v
 design -reset
@@ -71,10 +71,9 @@ write_verilog -noattr -noexpr {folder}/netlist.v""", folder / "cells.log")
     ports = json.loads((folder / "netlist.json").read_text())["modules"]["netlist"]["ports"]
     (folder / "twins.sv").write_text(twins(design, ports))
     sources = [*design.sources(), folder / "cells.v", folder / "netlist.v", folder / "twins.sv"]
-    # No lint: it is for hand-written code, and bits of a netlist's vector that depend on each other look like loops to Verilator
-    # (UNOPTFLAT).
-    # Without -fno-const-bit-op-tree, Verilator 5.006 gives wrong bits for the divider's netlist, which
-    # Yosys's own evaluation of the same file confirms to be right.
+    # -Wno-lint: lint is for hand-written code. -Wno-UNOPTFLAT: bits of a vector that depend on each other look like loops to Verilator.
+    # -fno-const-bit-op-tree: without this option Verilator 5.006 computes wrong bits for the divider's netlist. Yosys's evaluation of the
+    # same file confirms that the netlist is right.
     tools.run(["verilator", "--cc", "--exe", "--build", "-O3", "-fno-const-bit-op-tree", "-Wno-fatal",
                "-Wno-lint", "-Wno-UNOPTFLAT", "--no-timing", "-CFLAGS", "-O2", "--top-module", "twins",
                "--Mdir", folder / "obj", *sources, PROOFS / "netlist_agrees.cpp", "-o", "twins"],
@@ -84,13 +83,13 @@ write_verilog -noattr -noexpr {folder}/netlist.v""", folder / "cells.log")
 
 
 def twins(design: Design, ports: dict) -> str:
-    """Returns SystemVerilog of a module that holds RTL and netlist, with one vector of inputs for both."""
+    """Returns SystemVerilog of a module that instantiates RTL and netlist with the same inputs, and compares their outputs."""
     named = {"clk_i", "rst_ni"}
     inputs = [(name, len(port["bits"])) for name, port in ports.items()
               if port["direction"] == "input" and name not in named]
     outputs = [(name, len(port["bits"])) for name, port in ports.items()
                if port["direction"] == "output"]
-    # Whole words, as Verilator wants no stray bits above a port; at least three, for an array in C++.
+    # Input words of 32 bits: Verilator requires the unused upper bits of a port to be 0. At least three words make the port a C++ array.
     total = 32 * max(3, -(-sum(width for _, width in inputs) // 32))
     low, slices = 0, {}
     for name, width in inputs:

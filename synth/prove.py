@@ -12,7 +12,7 @@ from synth import catalogue, cores, float_cuts, float_proofs, float_specificatio
 from synth.assertions import PROOFS, Prepare, Proof, holds, rtl
 from synth.catalogue import LIBRARIES, Design
 
-NETLIST_FLOWS = ("fast", "area")  # whose netlists are compared without LONG
+NETLIST_FLOWS = ("fast", "area")  # flows whose netlists are compared without --long, too
 
 
 def adds(design: Design) -> tuple[dict, bool]:
@@ -21,8 +21,8 @@ def adds(design: Design) -> tuple[dict, bool]:
 
 
 def booth_assembly(**parameters: object) -> Prepare:
-    """Makes module "assembly", the part of booth_multiplier between the recoded digits and the tree: its inputs are the digits' signs and
-    the rows, its output the words for the tree."""
+    """Returns a Prepare that makes module "assembly", the part of booth_multiplier between the recoded digits and the tree. Its inputs are
+    the signs of the digits and the partial products (rows). Its output is the words that the tree adds."""
     return lambda sources: f"""{yosys.read(sources, "booth_multiplier", parameters.items())}
 rename -top assembly
 expose -input assembly/w:negative assembly/w:gen_row*.row
@@ -33,7 +33,7 @@ opt_clean -purge assembly"""
 
 
 def every_product(width: int) -> tuple[dict, bool]:
-    """Checks every product of the Verilated multiplier."""
+    """Checks the product of every pair of `width`-bit operands in the Verilated multiplier. Raises Refuted for a wrong product."""
     folder = store.OUT / "proofs" / f"every_product_{width}"
     harness = PROOFS / "booth_exhaustive.cpp"
     sources = cores.used("booth_multiplier", rtl("arith"))
@@ -106,10 +106,9 @@ def all_proofs() -> list[Proof]:
     proofs += [Proof(f"float.specification.{one.name}", f"as MPFR, {float_specifications.VECTORS:,} times",
                      "evaluation", functools.partial(float_specifications.agrees_with_mpfr, one), False)
                for one in float_specifications.SPECIFICATIONS]
-    # The pipelined unit in binary16: Verilator would take an hour for binary32's hundred thousand
-    # cells.
+    # The netlist of the pipelined unit is compared in binary16: in binary32 it has a hundred thousand cells, and Verilator takes an hour.
     narrow = catalogue.design("hit_test_pipeline", ExpWidth=5, FracWidth=10)
-    # In flow `blocks` memories are ports: its netlists cannot be compared with the RTL.
+    # Flow `blocks` turns memories into ports, so netlists of this flow cannot be compared with the RTL.
     rows = [row for row in catalogue.report_rows() if row.design.top != narrow.top and "blocks" not in row.flows["osu035"]]
     for row in [*rows, catalogue.Row("units", narrow, {"osu035": ("parts",)})]:
         for library in LIBRARIES:
@@ -138,7 +137,7 @@ COLUMNS = ["proofs", "claim", "by", "number", "most s", "most MB"]
 
 
 def group(name: str) -> str:
-    """Returns a proof's name without the parts in which proofs of a group differ: adders, arithmetics, the netlist's design."""
+    """Returns the name of a proof's group: the proof's name without the kind of adder or arithmetic, or "netlist.*"."""
     if name.startswith("netlist."):
         return "netlist.*"
     return re.sub(r"^(adder)\..*|(?:\.(?:ripple|uniform|graded|prefix|structural|behavioural))(?=\.|$)",
@@ -146,7 +145,7 @@ def group(name: str) -> str:
 
 
 def record(proofs: list[Proof], results: list[dict | None]) -> None:
-    """Writes claims and costs of these proofs into TABLE; rows of other proofs stay as they are."""
+    """Writes claims and costs of `proofs` into TABLE, one row per group. Rows of other groups remain unchanged."""
     rows = {row["proofs"]: row for row in csv.DictReader(TABLE.read_text().splitlines())}
     groups: dict[str, list[tuple[Proof, dict]]] = {}
     for proof, result in zip(proofs, results, strict=True):
@@ -160,7 +159,7 @@ def record(proofs: list[Proof], results: list[dict | None]) -> None:
 
 
 def is_kept(proof: Proof) -> bool:
-    """Returns whether an earlier run has kept the result, for the RTL and the claims as they are."""
+    """Returns whether an earlier run has kept the result for the present RTL and claim."""
     try:
         return proof.work()[1]
     except store.NotKept:
@@ -168,7 +167,7 @@ def is_kept(proof: Proof) -> bool:
 
 
 def main() -> int:
-    """Runs the proofs asked for. Returns 1 if one fails, 2 for errors that the user can correct."""
+    """Runs the selected proofs. Returns 1 if a proof fails, 2 for errors that the user can correct."""
     parser = argparse.ArgumentParser(prog="synth.prove", description=__doc__)
     parser.add_argument("names", nargs="*", help="beginnings of proofs' names; all if none")
     parser.add_argument("--quick", action="store_true", help="those alone that `make test` runs")

@@ -1,6 +1,6 @@
-"""Generates, from the tables of hw/ray_core/registers.md, the package of the RTL and the header for drivers.
+"""Generates the RTL's package csr_pkg.sv and the drivers' header registers.h from the tables of hw/ray_core/registers.md.
 
-`made()` gives the files' texts; `make synth DATASHEET=1` writes them and `synth.datasheet --check` compares.
+`made` returns the texts of both files. `make synth DATASHEET=1` writes the files, `synth.datasheet --check` compares them.
 """
 
 import dataclasses
@@ -10,13 +10,13 @@ import re
 from synth import cores
 
 PAGE = cores.HW / "ray_core" / "registers.md"
-PLAIN = 32  # words from address 0 up; words with access `idle` are plain registers
+PLAIN = 32  # words from address 0 that may be plain registers, those with access `idle`
 ACCESSES = ("ro", "rw", "wo", "w1c", "idle")
 
 
 @dataclasses.dataclass(frozen=True)
 class Register:
-    """Consecutive words; `mask`: the writable bits of each word, if it is a plain register."""
+    """Consecutive words. `mask`: the writable bits of each word of a plain register."""
 
     name: str
     address: int
@@ -78,7 +78,7 @@ def package(listed: list[Register]) -> str:
 
 
 def header(listed: list[Register]) -> str:
-    """Returns registers.h: addresses, and bits as masks; for the counters, addresses."""
+    """Returns the text of registers.h: addresses of registers, masks of bits, and addresses of counters."""
     lines = ["/* Registers of the ray core: addresses, and bits as masks. Made of registers.md by `make synth DATASHEET=1`. */",
              "#ifndef RAYGATE_REGISTERS_H", "#define RAYGATE_REGISTERS_H", "", "enum {"]
     for register in listed:

@@ -1,4 +1,4 @@
-"""Writes what was measured: report.md for people, results.json and results.csv for programs."""
+"""Writes the measured results: report.md for people, results.json and results.csv for programs."""
 
 import itertools
 import json
@@ -14,7 +14,7 @@ def title(target: str) -> str:
 
 
 def groups() -> list[tuple[str, list[tuple[str, str]]]]:
-    """Returns the tables of a section, one for each library and one for the FPGAs: units, and target and flow of each column."""
+    """Returns the tables of a section, one per library and one for all FPGAs: units of measurement, and target and flow of each column."""
     return [*((f"{library.title}: um2 / ns", [(library.name, flow) for flow in FLOWS]) for library in catalogue.LIBRARIES),
             ("LUTs / MHz", [(device.name, "placed") for device in FPGAS])]
 
@@ -50,7 +50,7 @@ def measured_tables(rows: list[Row], targets: measure.Targets) -> tuple[list[dic
 
 
 def legend(records: list[dict]) -> str:
-    """Returns the meaning of the tables' numbers and flows, one line for each."""
+    """Returns the meaning of the tables' figures and flows, one per line."""
     flows = [flow for flow in FLOWS if any(record["flow"] == flow for record in records)]
     parts = ["um2 / ns: of the cells alone (NAND2X1: 96 in 0.35 um); the slowest path at the typical corner, before layout"] if flows else []
     if any("mhz" in record for record in records):
@@ -59,7 +59,7 @@ def legend(records: list[dict]) -> str:
 
 
 def path_table(record: dict) -> str:
-    """Returns a table of a critical path, cell by cell (output pins only: delays of a cell with its load)."""
+    """Returns a table of a critical path, one row per cell: the delay of the cell with its load, from input to output pin."""
     rows = []
     for before, step in itertools.pairwise(record["path"]):
         (entered, _, came), (cell, _, pin) = before["pin"].rpartition("/"), step["pin"].rpartition("/")
@@ -69,7 +69,7 @@ def path_table(record: dict) -> str:
 
 
 def blocks_table(record: dict) -> str:
-    """Returns a table of area and memories of each block of flow `blocks`, the largest first."""
+    """Returns a table of the blocks of flow `blocks`: area and memory bits, the largest area first."""
     blocks = sorted(record["blocks"].items(), key=lambda item: -item[1]["area"])
     rows = [[name, f"{block['count']}", f"{block['area'] / 1e6:.2f}", f"{block['bits']:,}"] for name, block in blocks]
     rows.append([record["design"], "", f"{sum(block['area'] for _, block in blocks) / 1e6:.2f}",
@@ -85,8 +85,8 @@ def versions() -> str:
 
 
 def write(records: list[dict], measured: str, sections: list[tuple[str, str]], command: str, publish: bool = False) -> None:
-    """Writes the three files; with `publish` the CSV into results/, too. `measured`: the tables of measured_tables; `sections`: (title,
-    Markdown) to append; `command`: the make command that measured."""
+    """Writes the three files. `measured`: the tables of measured_tables. `sections`: (title, Markdown) to append. `command`: the make
+    command that measured. `publish`: also writes the CSV into results/."""
     store.OUT.mkdir(parents=True, exist_ok=True)
     parts = ["# What the arithmetic costs\n", f"Made by `make synth` with {versions()}.\n", legend(records).replace("\n", "\n\n"), measured,
              *(f"## {heading}\n\n{text}" for heading, text in sections)]

@@ -11,8 +11,8 @@ from synth import tools
 
 @dataclasses.dataclass(frozen=True)
 class Job:
-    """Something to run. `work` returns its result and whether that was kept from an earlier run. `tell` describes the result
-    in the line of progress; without it there is no line."""
+    """A job. `work` returns the result, and whether the result was kept from an earlier run. `tell` describes the result in a line of
+    progress; None prints no line."""
 
     name: str
     work: Callable[[], tuple[dict, bool]]
@@ -20,9 +20,9 @@ class Job:
 
 
 def run(jobs: list[Job], workers: int, failures: list[str]) -> Iterator[dict | None]:
-    """Yields the results in the order of `jobs`; None for a job that failed, whose error is appended to `failures`.
+    """Yields the results in the order of `jobs`. For a job that fails, yields None and appends the error to `failures`.
 
-    A missing tool stops everything; a design that fails leaves the others running.
+    A job that raises ToolFailed does not stop the others; any other exception, such as MissingTool, stops all jobs.
     """
     start = time.monotonic()
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:

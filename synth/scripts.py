@@ -1,28 +1,28 @@
-"""The flows as scripts of Yosys: what `make synth`, `make fpga` and `make synth VERILOG=1` run."""
+"""The flows as Yosys scripts, used by `make synth`, `make fpga` and `make synth VERILOG=1`."""
 
 import pathlib
 
 from synth import tools, yosys
 from synth.catalogue import Design, Library
 
-# ABC's script in a flow; `default` has Yosys's own commands.
+# ABC's script for each flow. Flow `default` has none: Yosys's default commands for ABC are used.
 ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "area": "area.abc", "small": "small.abc",
                "fast": "fast.abc", "faster": "faster.abc", "parts": "fast.abc",
                "modules": "fast.abc", "blocks": "fast.abc"}
-# Modules that flow `modules` maps on their own, so that a picture of the layout can tell them apart.
+# Modules that flow `modules` maps separately, to distinguish them in a picture of the layout.
 PICTURED = ("booth_encoder", "booth_row", "carry_save_tree", "adder", "fp_unpack", "fp_round", "srt_first_row",
             "srt_row", "sticky_right_shift", "leading_zero_counter")
-FILES = [pathlib.Path(__file__), pathlib.Path(yosys.__file__)]  # what results depend on beside the files that a flow names
+FILES = [pathlib.Path(__file__), pathlib.Path(yosys.__file__)]  # files that all results depend on
 
 
 def elaborated(design: Design, structural: bool = False) -> str:
-    """Returns commands that elaborate a design; `structural`: with its full adders and multiplexers as cells."""
+    """Returns commands that elaborate a design. `structural`: full adders and multiplexers become cells of flows/structure.v."""
     return yosys.read(design.sources(structural), design.top, design.parameters)
 
 
 def structure(design: Design) -> str:
     """Returns commands that flatten a design to the cells of structure.v and the gates between them."""
-    # structure.v again, for the ports of cells that have had no instance until now.
+    # structure.v is read again, for the ports of cells that have had no instance until now.
     return f"""{elaborated(design, structural=True)}
 proc
 flatten -noscopeinfo
@@ -35,30 +35,31 @@ opt_clean"""
 
 
 def structure_json(design: Design, out: pathlib.Path) -> str:
-    """Returns the commands of `structure`, then for gates of one bit and JSON."""
+    """Returns the commands of `structure`, followed by commands that split gates into single bits and write JSON."""
     return f"{structure(design)}\nsimplemap\nopt_clean\nwrite_json {out}"
 
 
 def plain_verilog(design: Design, out: pathlib.Path) -> str:
-    """Returns commands that write a design and all that it instantiates as one file of plain Verilog."""
+    """Returns commands that write a design and all modules below it as one file of plain Verilog."""
     return f"{elaborated(design)}\nproc\nopt_expr\nopt_clean\nbwmuxmap\nwrite_verilog -noattr {out}"
 
 
 def _kept(*modules: str) -> str:
-    """Returns the command after which ABC maps each of these modules on its own, and once, however often it is instantiated."""
+    """Returns the command that makes ABC map each of `modules` separately, once for all instances with equal parameters."""
     return "setattr -mod -set keep_hierarchy 1 " + " ".join(f"{module}$*" for module in modules)
 
 
 def gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
-    """Returns commands that make gates and registers of an elaborated design. None crosses a multiplexer, so carry-select stays."""
+    """Returns commands that turn an elaborated design into gates and registers. Carry-select structures remain: no command moves logic
+    across a multiplexer."""
     lines = ["proc"]
-    if flow == "blocks":  # a read enable becomes the memory's; else the word would wait in a register after it
+    if flow == "blocks":  # move read enables into the memories; else a register after the memory would hold the word
         lines += ["opt_clean", "opt_dff -nosdff ram$*"]
     if flow in ("parts", "blocks"):
         lines += [_kept("fp_adder", "fp_multiplier", "fp_divider", *(blocks if flow == "blocks" else []))]
     if flow == "modules":
         lines += [_kept(*PICTURED)]
-    # opt_dff: restores resets to constants, which the reader states as asynchronous loads.
+    # opt_dff restores resets to constants: the reader turns them into asynchronous loads.
     lines += ["flatten -noscopeinfo", "opt_expr", "opt_merge", "opt_dff -nodffe -nosdff", "opt_clean"]
     if flow == "blocks":
         lines += ["memory -nomap", f"read_verilog -lib {tools.FLOWS}/kept_memory.v", f"techmap -map {tools.FLOWS}/kept_memories.v",
@@ -71,14 +72,14 @@ def standard_cells(design: Design, library: Library, flow: str, blocks: list[str
                    out: pathlib.Path) -> str:
     """Returns commands that map a design to a library by a flow of the catalogue.
 
-    `blocks`: modules that flow `blocks` maps on their own, beside the float cores. `constraints`: driver and load, for ABC.
-    They write OUT.v, OUT.json, OUT.stat.json; OUT.timed.v for OpenSTA, which reads no concatenations in assignments, so that
-    each bit is a port of its own; and in flow `blocks` OUT.blocks.json, the same statistics module by module, and OUT.memories.
-    """
-    if flow == "cells":  # full adders and multiplexers become the library's own cells, out of ABC's reach
+    `blocks`: modules that flow `blocks` maps separately, like the float cores. `constraints`: file of driver and load, for ABC.
+    The commands write OUT.v, OUT.json, OUT.stat.json (statistics) and OUT.timed.v. In OUT.timed.v, for OpenSTA, each bit of a port is a
+    port, because OpenSTA reads no concatenations in assignments. Flow `blocks` also writes OUT.blocks.json (statistics by module) and
+    OUT.memories."""
+    if flow == "cells":  # full adders and multiplexers become library cells, which ABC does not change
         mapped = f"{structure(design)}\ntechmap -map {tools.FLOWS}/osu_cells.v\ntechmap\nopt_expr\nopt_clean"
     elif flow in ("default", "area", "small"):
-        # Yosys's own recipe. -noshare: its SAT-based resource sharing can run for ever.
+        # Yosys's default recipe. -noshare: the SAT-based resource sharing may not terminate.
         mapped = f"{elaborated(design)}\nsynth -flatten -noshare -noabc -top {design.top}"
     else:
         mapped = f"{elaborated(design)}\n{gates(flow, blocks, out)}"
@@ -100,8 +101,8 @@ def standard_cells(design: Design, library: Library, flow: str, blocks: list[str
 
 
 def fpga(design: Design, family: str, luts: str, out: pathlib.Path, wrapper: pathlib.Path | None = None) -> str:
-    """Returns commands that map a design to an FPGA, ice40 or ecp5, as JSON for nextpnr. `luts`: options that select the kinds of LUTs;
-    `wrapper`: a file of the module "registered", which puts registers around the design."""
+    """Returns commands that map a design to an FPGA and write JSON for nextpnr. `family`: ice40 or ecp5. `luts`: options that select the
+    kinds of LUTs. `wrapper`: a file with module "registered", which puts registers around the design."""
     lines = [elaborated(design)]
     if wrapper:
         lines += ["proc", "flatten -noscopeinfo", f"read_verilog {wrapper}"]
@@ -109,5 +110,5 @@ def fpga(design: Design, family: str, luts: str, out: pathlib.Path, wrapper: pat
 
 
 def netlist_json(out: pathlib.Path) -> str:
-    """Returns commands that write a mapped design for nextpnr, without $scopeinfo cells, which it does not know."""
+    """Returns commands that write a mapped design for nextpnr. They remove $scopeinfo cells, which nextpnr does not support."""
     return f"delete t:$scopeinfo\nwrite_json {out}"

@@ -1,4 +1,4 @@
-"""Makes SMT-LIB of modules, by Yosys, and solves it with Bitwuzla."""
+"""Converts modules to SMT-LIB with Yosys and solves queries with Bitwuzla."""
 
 import functools
 import importlib.metadata
@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from synth import tools, yosys
 
-# One module; its assertions, assumptions and covers become cells that hold in every state, whatever clock they had.
+# Commands that flatten a design, and make its assertions, assumptions and covers apply in every state, instead of at clock edges.
 FLAT = "flatten -noscopeinfo\nopt\nsetparam -set TRG_ENABLE 0 t:$check\nchformal -lower"
 PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
 FLOAT = PROOFS / "float"
@@ -19,7 +19,7 @@ FREE = PROOFS / "free.v"
 
 
 def read(sources: Iterable[pathlib.Path], top: str, parameters: Iterable[tuple[str, object]] = ()) -> str:
-    """Returns the commands that elaborate `top` and make words free that are declared (* anyseq *) or (* anyconst *)."""
+    """Returns the commands that elaborate `top`. Words declared (* anyseq *) or (* anyconst *) become free variables for the solver."""
     return f"""{yosys.read(sources, top, parameters)}
 techmap -map {FREE} a:anyseq %ci1 t:$buf %i
 techmap -map {FREE} -D CONSTANT a:anyconst %ci1 t:$buf %i
@@ -29,8 +29,8 @@ setattr -unset anyseq -unset anyconst w:*"""
 
 def state(model: str, top: str, name: str, before: str = "",
           given: dict[str, str] | None = None) -> str:
-    """Declares a state of a module: the successor of `before`, or any state. Registers are terms of the previous state, inputs in `given`
-    those terms; there are no equations, so that what two states compute alike is one term for the solver."""
+    """Returns SMT-LIB that declares state `name` of a module: the successor of state `before`, or any state if `before` is "". Registers
+    are defined as terms of `before`, not by equations, so that the solver shares equal logic of two states. `given`: terms of inputs."""
     width = int(re.search(rf"\(define-sort \|{re.escape(top)}_s\| \(\) \(_ BitVec (\d+)\)\)", model)[1])
     fields = re.findall(r"^\(define-fun \|(\S+#\d+)\| .*\(\(_ extract (\d+) (\d+)\) state\).* ; (.*)$",
                         model, re.M)
@@ -59,8 +59,8 @@ def state(model: str, top: str, name: str, before: str = "",
 
 def ports(model: str, top: str, suffix: str = "", before: str = "",
           given: dict[str, str] | None = None) -> tuple[str, list[str]]:
-    """Returns a state (see `state`) with names, ending in `suffix`, for the module's ports and for wires that contracts leave free
-    ("free_...", numbered if there is a row of them); and these names without `suffix`."""
+    """Returns SMT-LIB for a state (see `state`), with names for the module's ports and for wires that contracts leave free ("free_...",
+    with the index of their generate block). Each name ends in `suffix`. Also returns these names without `suffix`."""
     text = [state(model, top, f"state{suffix}", before, given)]
     names = []
     pattern = re.compile(rf"\(define-fun \|({top}_n (\S+))\| \(\(state \|{top}_s\|\)\) "
@@ -79,8 +79,8 @@ def ports(model: str, top: str, suffix: str = "", before: str = "",
 
 def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: pathlib.Path,
                 keep: pathlib.Path | None = None) -> str:
-    """Returns a module with parameters ("Name value ...") as SMT-LIB: for every wire, a function of the state, which includes inputs and
-    wires that contracts leave free. Writes its netlist to `keep`, so that faults can be put into it."""
+    """Returns a module with parameters ("Name value ...") as SMT-LIB: one function of the state per wire. The state includes inputs and the
+    wires that contracts leave free. Writes the netlist to `keep`, if given, for fault injection."""
     smt2, words = folder / "model.smt2", parameters.split()
     yosys.run("\n".join([read(sources, top, zip(words[::2], words[1::2])), FLAT,
                          *([f"write_rtlil {keep}"] if keep else []), f"dffunmap\nwrite_smt2 -stbv -wires {smt2}"]),
@@ -89,7 +89,7 @@ def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: 
 
 
 def version() -> str:
-    """Returns the version of Bitwuzla, or "" if it is not installed."""
+    """Returns the version of Bitwuzla, or "" if Bitwuzla is not installed."""
     try:
         return importlib.metadata.version("bitwuzla")
     except importlib.metadata.PackageNotFoundError:
@@ -97,7 +97,7 @@ def version() -> str:
 
 
 def solve(file: pathlib.Path, text: str, terms: tuple[str, ...] = (), limit: float = 0) -> dict:
-    """Returns Bitwuzla's answer to `text`, which is kept in `file`; see proofs/float/solve.py."""
+    """Writes the query `text` to `file` and returns Bitwuzla's answer. For `terms`, `limit` and the answer see proofs/float/solve.py."""
     if importlib.util.find_spec("bitwuzla") is None:
         raise tools.MissingTool("Bitwuzla is not installed: pip install -r synth/requirements.txt")
     file.write_text(text + "(check-sat)\n")

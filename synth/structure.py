@@ -1,6 +1,6 @@
-"""Netlists of full adders, multiplexers and gates (flows/structure.v): made, timed by the paper's delay model, and evaluated.
+"""Makes netlists of full adders, multiplexers and gates (flows/structure.v), times them by the paper's delay model, and evaluates them.
 
-The paper states 48, 14 and 10 full-adder delays, but neither a multiplexer's delay nor the paths; so every figure here names its counting.
+The paper states delays of 48, 14 and 10 full adders, but not the delay of a multiplexer. Every delay here is therefore for a Counting.
 """
 
 import dataclasses
@@ -14,11 +14,11 @@ from synth.catalogue import Design
 
 @dataclasses.dataclass(frozen=True)
 class Counting:
-    """Delays of a path's cells, in full-adder delays; gates have none."""
+    """A way to count the delay of a path, in full-adder delays. Gates have no delay."""
 
     title: str
     multiplexer: float  # one multiplexer
-    last_multiplexer: float  # a multiplexer that gives a bit of the sum, the last on its path
+    last_multiplexer: float  # a multiplexer whose output is a bit of the sum
 
 
 COUNTINGS = [
@@ -30,8 +30,8 @@ COUNTINGS = [
 
 
 def netlist(design: Design) -> dict:
-    """Returns the module of `design` as Yosys's JSON, flattened to structure.v's cells and gates; `names`: the bits of each word of the
-    sources."""
+    """Returns the ports and cells of `design` as in Yosys's JSON, flattened to gates and the cells of structure.v. Entry `names`: the bits
+    of each signal of the sources, by name."""
     folder = store.OUT / "structure" / design.name
     files = [*design.sources(structural=True), tools.FLOWS / "known_inputs.v", *scripts.FILES]
     wanted = store.key(files, yosys.version(), design.facts, "with names")
@@ -49,7 +49,7 @@ def _elaborate(design: Design, folder: pathlib.Path) -> dict:
 
 
 def pins(cell: dict, direction: str) -> dict[str, list]:
-    """Returns port -> bits, lowest first: the netlist's numbers, or the constants "0", "1", "x"."""
+    """Returns port -> bits, lowest first. A bit is its number in the netlist, or a constant "0", "1", "x"."""
     return {port: bits for port, bits in cell["connections"].items() if cell["directions"][port] == direction}
 
 
@@ -64,7 +64,7 @@ def outputs(cell: dict) -> list:
 
 
 def in_order(module: dict, everything: bool = False) -> Iterator[dict]:
-    """Returns the cells that the outputs depend on, or all cells, each after those that it depends on."""
+    """Returns the cells that the outputs depend on, or all cells, in topological order: each cell follows the cells that drive it."""
     cells = module["cells"]
     driver = {bit: place for place, cell in enumerate(cells) for bit in outputs(cell)}
     before = {place: [driver[bit] for bit in inputs(cell) if bit in driver] for place, cell in enumerate(cells)}
@@ -79,8 +79,8 @@ def in_order(module: dict, everything: bool = False) -> Iterator[dict]:
 
 
 def arrivals(module: dict, costs: dict[str, float], gate: float = 0) -> tuple[dict[object, float], dict[object, dict]]:
-    """Returns the arrival time of each bit, in full-adder delays, and the cell that drives it. `costs`: delays of cells by type; `gate`:
-    the delay of all other types."""
+    """Returns, by bit, the arrival time in full-adder delays, and the cell that drives the bit. `costs`: delays of cells by type. `gate`:
+    delay of all other types."""
     arrival: dict[object, float] = {}
     giver: dict[object, dict] = {}
     for cell in in_order(module):
@@ -104,7 +104,7 @@ def hardware(module: dict) -> dict[str, int]:
     return {**found, "gate": len(kinds) - sum(found.values())}
 
 
-# By type of cell: output port -> function of the input ports' values; unsigned numbers.
+# Cell type -> output port -> function of the values of the input ports. Values are unsigned numbers.
 FUNCTIONS: dict[str, dict[str, Callable[[dict[str, int]], int]]] = {
     "FULL_ADDER": {"SUM": lambda x: x["A"] ^ x["B"] ^ x["C"], "CARRY": lambda x: int(x["A"] + x["B"] + x["C"] > 1)},
     "MULTIPLEXER": {"OUT": lambda x: x["WHEN_1"] if x["SELECT"] else x["WHEN_0"]},
@@ -125,7 +125,7 @@ FUNCTIONS["CARRY_SAVE"] = FUNCTIONS["FULL_ADDER"]
 
 
 def evaluate(module: dict, given: dict[str, int]) -> dict[object, int]:
-    """Returns bit -> value, where input port `name` has the number given[name]; bits without a driver count as 0."""
+    """Returns bit -> value for input ports with the numbers `given`, by name. Bits without a driver are 0."""
     values: dict[object, int] = {"0": 0, "1": 1, "x": 0}
     for name, number in given.items():
         values |= split(module["ports"][name]["bits"], number)
@@ -137,7 +137,7 @@ def evaluate(module: dict, given: dict[str, int]) -> dict[object, int]:
 
 
 def split(bits: list, number: int) -> dict[object, int]:
-    """Returns bit -> its value if `bits`, lowest first, hold `number`."""
+    """Returns bit -> value for `bits`, lowest first, that hold `number`."""
     return {bit: number >> place & 1 for place, bit in enumerate(bits)}
 
 
@@ -147,9 +147,9 @@ def word(bits: list, values: dict[object, int]) -> int:
 
 
 def without_constants(module: dict) -> dict:
-    """Returns the same function with fewer gates: no gate has a constant input or the same input twice, and none occurs twice. Gates and
-    cells must have ports of one bit."""
-    same: dict[object, object] = {}  # bit -> the bit or constant that it equals
+    """Returns a netlist of the same function, without gates that have a constant input or two equal inputs, and without duplicate gates.
+    All ports of cells must have one bit."""
+    same: dict[object, object] = {}  # removed bit -> the bit or constant that replaces the removed bit
     cells, known = [], {}
     for cell in in_order(module):
         ins = {port: same.get(bit, bit) for port, (bit,) in pins(cell, "input").items()}

@@ -3,11 +3,11 @@ SYNTH_JOBS ?= 2
 
 .PHONY: synth prove fpga lecture layout
 
-# $(call options,...): the given ones of these variables, as options of their names.
+# $(call options,...): command-line options for those of the listed variables that are set: --width='48' for WIDTH=48.
 options = $(foreach name,$(1),$(if $($(name)),--$(subst _,-,$(name))='$($(name))'))
 design_words = TOP ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT TARGETS PUBLISH
 
-# Options of one design need TOP; PARAMS needs VERILOG.
+# Options for a single design need TOP. PARAMS needs VERILOG.
 ifneq ($(and $(PARAMS),$(if $(VERILOG),,1)),)
 $(error PARAMS: expected VERILOG=1, too)
 endif

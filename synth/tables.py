@@ -1,4 +1,4 @@
-"""Tables of reports, as Markdown that is aligned in a terminal, too, and as CSV; and the line that says what measured them."""
+"""Writes tables as aligned Markdown and as CSV, and the line that names the command, commit and date of a measurement."""
 
 import csv
 import datetime
@@ -7,11 +7,11 @@ import pathlib
 import re
 import subprocess
 
-RESULTS = pathlib.Path(__file__).resolve().parent / "results"  # what PUBLISH=1 writes
+RESULTS = pathlib.Path(__file__).resolve().parent / "results"  # the folder that PUBLISH=1 writes
 
 
 def markdown(header: list[str], rows: list[list[object]]) -> str:
-    """Returns a Markdown table whose columns line up; numbers are right-aligned."""
+    """Returns a Markdown table with columns padded to equal width. Columns of numbers are right-aligned."""
     text = [[str(cell) for cell in row] for row in [header, *rows]]
     if not rows:
         return ""
@@ -27,7 +27,7 @@ def markdown(header: list[str], rows: list[list[object]]) -> str:
 
 
 def page(header: list[str], rows: list[list[object]]) -> str:
-    """Returns the same table without padding, as pages have it."""
+    """Returns the table of `markdown` without padding, for pages."""
     return re.sub(r"(?m)^\|-.*", lambda rule: re.sub("-+", "---", rule[0]), re.sub(r" *\| *", "|", markdown(header, rows)))
 
 
@@ -47,10 +47,10 @@ def measured(command: str) -> str:
 
 
 def with_results(text: str, measured_by: dict[str, str] = {}) -> str:
-    """Returns a page whose tables of published CSV files are made again, each with the line that says what measured it.
+    """Returns page `text` with its tables regenerated from the published CSV files. Each table is followed by the line of `measured`.
 
-    A table stands between `<!-- FILE: COLUMNS -->` and `<!-- end -->`; `<!-- synth.csv, SECTION: FLOWS -->` has area / ns of
-    the section's designs in OSU 0.35 um. `measured_by`: that line, for new files."""
+    A table is between `<!-- FILE: COLUMNS -->` and `<!-- end -->`. A table `<!-- synth.csv, SECTION: FLOWS -->` has area / ns of the
+    section's designs in OSU 0.35 um. `measured_by`: new lines of `measured`, by file; other tables keep their lines."""
     def table(mark: re.Match) -> str:
         (file, _, section), heads = mark[2].partition(", "), mark[3].split(", ")
         rows = list(csv.DictReader((RESULTS / file).read_text().splitlines()))
@@ -65,7 +65,7 @@ def with_results(text: str, measured_by: dict[str, str] = {}) -> str:
 
 
 def publish(file: str, text: str, command: str) -> None:
-    """Writes a CSV file of results/, and its tables in results/README.md."""
+    """Writes `text` to a CSV file of results/ and updates this file's tables in results/README.md. `command`: as for `measured`."""
     (RESULTS / file).write_text(text)
     results = RESULTS / "README.md"
     results.write_text(with_results(results.read_text(), {file: measured(command)}))

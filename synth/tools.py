@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-VENV = ROOT / "build" / "venv"  # of the Python packages that .ci/setup installs
+VENV = ROOT / "build" / "venv"  # has the Python packages that .ci/setup installs
 FLOWS = pathlib.Path(__file__).resolve().parent / "flows"
 
 # Tool -> (what installs it, arguments that print its version).
@@ -30,16 +30,16 @@ TOOLS = {
 
 
 class MissingTool(Exception):
-    """A tool or a library is not installed; the message holds the line that installs it."""
+    """A tool or a library is not installed. The message has the command that installs it."""
 
 
 class ToolFailed(Exception):
-    """A tool ended with an error; the message holds its line with ERROR, or else its last lines, and where its log is."""
+    """A tool ended with an error. The message has the tool's first line with "ERROR: ", or else its last lines, and the log's name."""
 
 
 def command(name: str) -> Callable[[Callable[[], int]], Callable[[], int]]:
-    """Decorates a `main` to print errors as one line, "NAME: error". The exit status is then 1 if a tool failed, 2 for errors that the user
-    can correct."""
+    """Returns a decorator for `main` that prints an error as one line, "NAME: error". The exit status is then 1 if a tool failed, 2 for
+    errors that the user can correct."""
     def wrap(main: Callable[[], int]) -> Callable[[], int]:
         def run_main() -> int:
             try:
@@ -94,8 +94,8 @@ _costs = threading.local()  # .list: (processor seconds, megabytes) of each comm
 
 def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None,
         folder: pathlib.Path = ROOT, name: str = "") -> str:
-    """Runs `command` in `folder`, writes its output to `log` and returns it. Raises ToolFailed, which calls the command `name`, by default
-    the name of its program."""
+    """Runs `command` in `folder`, writes the output to `log` and returns the output. Raises ToolFailed if the command fails; `name` is then
+    the command's name in the message (default: the program's name)."""
     command = [find(command[0]), *map(str, command[1:])]
     environment = {**os.environ, "LC_ALL": "C", **(env or {})}
     log.parent.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,5 @@
-"""The proofs of proofs/units.toml: claims about the units and their modules. Arithmetic is replaced by modules with only the properties
-that the claim needs (proofs/contracts)."""
+"""Runs the proofs of proofs/units.toml, claims about the units and their modules. Arithmetic modules are replaced by contracts
+(proofs/contracts): modules that have only the properties that the claim needs."""
 
 import functools
 import pathlib
@@ -13,7 +13,7 @@ CHECKS = cores.HW.parent / "sim" / "checks"
 
 
 def around(cells: list[str], contracts: list[str]) -> list[pathlib.Path]:
-    """Returns the files of modules and of all that they need, with the modules of these files of contracts/ in place of hw/'s."""
+    """Returns the files of the modules `cells` and of all modules that they need. Modules in the files `contracts` replace those in hw/."""
     standing = [PROOFS / "contracts" / f"{name}.sv" for name in contracts]
     replaced = re.findall(r"^module (\w+)", "".join(file.read_text() for file in standing), re.M)
     folders = {file.parent.name for name in cells for file in catalogue.HW.glob(f"*/{name}.sv")} or {"ray_core"}
@@ -23,7 +23,7 @@ def around(cells: list[str], contracts: list[str]) -> list[pathlib.Path]:
 
 
 def prove(name: str, row: dict) -> tuple[dict, bool]:
-    """Proves one case of a row of the table; see `holds`."""
+    """Proves one case of an entry of units.toml; see assertions.holds."""
     parameters = {key: value for key, value in row.items() if key[0].isupper()}
     cells = row["cell"].split()
     prepare = None

@@ -1,7 +1,7 @@
-"""Writes a module of hw/, with its parameters and all that it instantiates, as one file of plain Verilog.
+"""Writes a module of hw/ with given parameters, and all modules that it instantiates, as one file of plain Verilog.
 
-`python3 -m synth.verilog TOP [Name=value ...]`: build/verilog/TOP.v, for tools that read no SystemVerilog,
-such as Icarus Verilog. Exit status 2 for an unknown module or parameter.
+`python3 -m synth.verilog TOP [Name=value ...]` writes build/verilog/TOP.v, for tools that read no SystemVerilog, such as Icarus Verilog.
+The exit status is 2 for an unknown module or parameter.
 """
 
 import pathlib
@@ -15,7 +15,7 @@ OUT = tools.ROOT / "build" / "verilog"
 def write(design: catalogue.Design, out: pathlib.Path) -> None:
     """Elaborates `design` and writes `out`; raises ToolFailed if Yosys refuses the design."""
     out.parent.mkdir(parents=True, exist_ok=True)
-    out.unlink(missing_ok=True)  # a run that fails must not leave the file of an earlier one
+    out.unlink(missing_ok=True)  # a failed run must not leave an older file behind
     yosys.run(scripts.plain_verilog(design, out), out.with_suffix(".log"))
 
 

@@ -1,7 +1,7 @@
-"""Runs Yosys, the library of Python's package pyosys, in a process of its own: a crash of Yosys ends that process alone.
+"""Runs Yosys (Python package pyosys) in a separate process, so that a crash of Yosys does not end the caller.
 
-`python3 -m synth.yosys 'COMMANDS'`: runs commands, one per line or separated by semicolons, and prints Yosys's log. With
---strict, a warning fails, too. `python3 -m synth.yosys --abc 'COMMANDS'` runs ABC. Exit status 1 where a command fails.
+`python3 -m synth.yosys 'COMMANDS'` runs commands, one per line or separated by semicolons, and prints Yosys's log. With --strict, warnings
+are errors. `python3 -m synth.yosys --abc 'COMMANDS'` runs ABC. The exit status is 1 if a command fails.
 """
 
 import argparse
@@ -16,8 +16,8 @@ from synth import tools
 
 
 def folder() -> pathlib.Path:
-    """Returns the folder of the installed package, of this Python or of the one that .ci/setup makes: it has yosys-abc and, in share/,
-    models and maps of cells. Raises MissingTool."""
+    """Returns the folder of the installed package, in this Python or in the environment made by .ci/setup. The folder has yosys-abc and,
+    in share/, cell models and techmap files. Raises MissingTool."""
     spec = importlib.util.find_spec("pyosys")
     found = [pathlib.Path(spec.origin).parent] if spec else [*tools.VENV.glob("lib/*/site-packages/pyosys")]
     if not found:
@@ -39,7 +39,7 @@ def installed() -> bool:
 
 
 def version() -> str:
-    """Returns the version, e.g. "0.70"; "" if Yosys is not installed."""
+    """Returns the version of Yosys, e.g. "0.70", or "" if Yosys is not installed."""
     if not installed():
         return ""
     (found,) = importlib.metadata.distributions(name="pyosys", path=[str(folder().parent)])
@@ -47,15 +47,15 @@ def version() -> str:
 
 
 def read(sources: Iterable[pathlib.Path], top: str, parameters: Iterable[tuple[str, object]] = (), options: str = "") -> str:
-    """Returns the commands that elaborate `top`. Modules stay modules, named MODULE$PATH of their first instance; instances with the same
-    parameters share one module."""
+    """Returns the commands that elaborate `top`. The hierarchy is kept. Instances with equal parameters share one module, which is named
+    MODULE$PATH after the first instance."""
     overrides = "".join(f"-G {name}={value} " for name, value in parameters)
     return (f"read_slang -j 1 --keep-hierarchy --disable-instance-caching=false {options} {overrides}--top {top} "
             f"{' '.join(map(str, sources))}\nhierarchy -check -top {top}")
 
 
 def run(script: str, log: pathlib.Path) -> str:
-    """Runs a script, which is kept beside `log`; returns Yosys's log. Raises ToolFailed and MissingTool."""
+    """Runs a script and returns Yosys's log. Keeps the script beside `log`, with suffix .ys. Raises ToolFailed and MissingTool."""
     file = log.with_suffix(".ys")
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(script + "\n")
@@ -83,7 +83,7 @@ def main() -> int:
     except tools.MissingTool as error:
         print(f"synth.yosys: {error}", file=sys.stderr)
         return 2
-    from pyosys import libyosys  # only here: the import takes a tenth of a second, and Yosys may end the process
+    from pyosys import libyosys  # imported only here: the import takes a tenth of a second, and Yosys may end the process
 
     if given.strict:
         libyosys.run_pass("logger -werror .")

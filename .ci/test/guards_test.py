@@ -1,4 +1,4 @@
-"""Tests guards.toml and the plan that guards.py makes of it. Runs in the root of the checkout, after the build."""
+"""Tests guards.toml and the plans of guards.py. Runs in the root of the checkout, after the build."""
 
 import pathlib
 import re
@@ -22,7 +22,7 @@ class Table(unittest.TestCase):
         self.assertEqual(rooms - set(guard["rooms"]) - set(guard["without"]), set())
 
     def test_names_are_there(self):
-        """Path prefixes, tests and the texts that faults replace exist."""
+        """All path prefixes, tests and texts to be replaced by faults exist."""
         files, tests = guards.git("ls-files").splitlines(), guards.tests_of("build")
         for name, guard in guards.TABLE.items():
             with self.subTest(name):

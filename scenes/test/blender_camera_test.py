@@ -1,4 +1,4 @@
-"""The camera that blender_camera.py writes sees what Blender's own camera sees."""
+"""Tests that the camera written by blender_camera.py projects points like Blender's camera."""
 import math
 import pathlib
 import random
@@ -23,7 +23,7 @@ def unit(a):
 
 
 def place_in_picture(setting, aspect, point):
-    """Projects as raygate's camera does: returns x and y from -1 (left or lower edge) to 1."""
+    """Projects a point like raygate's camera. Returns x and y from -1 (left or lower edge) to 1."""
     way = [p - e for p, e in zip(point, setting["eye"])]
     forward = unit([t - e for t, e in zip(setting["target"], setting["eye"])])
     right = unit(cross(forward, setting["up"]))
@@ -34,8 +34,8 @@ def place_in_picture(setting, aspect, point):
 
 
 def blender_place(world, lens, sensor, fit, size, point):
-    """Projects as Blender's projection matrix does (BKE_camera_params_compute_viewplane): the sensor's side is as
-    long as the picture's side that it fits."""
+    """Projects a point like Blender's projection matrix (BKE_camera_params_compute_viewplane): the sensor's side has the length of the
+    picture's side to which it is fitted."""
     axes = [[row[column] for row in world[:3]] for column in range(4)]
     way = [p - e for p, e in zip(point, axes[3])]
     x, y, z = (dot(way, axis) for axis in axes[:3])
@@ -56,7 +56,7 @@ def rotation(random_numbers):
 
 class BlenderCamera(unittest.TestCase):
     def test_blenders_own_default_camera(self):
-        # 50 mm on a sensor of 36 mm, full HD: Blender shows 39.6 degrees across, 22.9 upright.
+        # 50 mm lens, 36 mm sensor, full HD: Blender displays 39.6 degrees horizontally, 22.9 vertically.
         self.assertAlmostEqual(vertical_fov(50, (36, 24), "AUTO", (1920, 1080)), 22.8952, places=4)
         self.assertAlmostEqual(vertical_fov(50, (36, 24), "VERTICAL", (1920, 1080)), 26.9915, places=4)
 

@@ -1,8 +1,7 @@
-"""Prints clocks of the board's core (hw/board) for three frames at a sample per pixel, and whether the pictures are the cpu engine's.
+"""Prints the clocks of the board's core (hw/board) for three frames, one sample per pixel; checks that pictures equal the cpu engine's.
 
-Clocks are simulated, with the SDRAM at its pins and a host as fast as the clock; loading the scene is not counted.
-Frames per second are at CLOCK_MHZ. A serial line of BAUD sends 44 bytes per ray while it receives 32 per result, so its
-seconds are those of the 44 bytes.
+Clocks are simulated, with the SDRAM at its pins and a link of one word per clock. Loading the scene is not counted. Frames per second are
+at CLOCK_MHZ. Seconds by the serial line are the time to send 44 bytes per ray at BAUD; the 32 bytes per result are received meanwhile.
 
 usage: board_frames.py RENDER SCENES [SIZE]
 """
@@ -18,7 +17,7 @@ FRAMES = {"paper": ["--view", "0,8.0625"], "cornell": [], "teapot": []}
 
 
 def simulate(render, scene, size, options, folder):
-    """Renders a frame; returns the picture's file and the statistics."""
+    """Renders a frame. Returns the picture's file and the statistics."""
     out = pathlib.Path(folder) / options[-1]
     stats = out.with_suffix(".json")
     subprocess.run([render, scene, "--size", size, "--spp", "1", "--threads", "1", "--quiet", "--stats", stats, "--output", out,

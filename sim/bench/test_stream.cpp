@@ -35,7 +35,7 @@ TestStream random_stream(int bursts, int tests, double aimed) {
     for (int i = 0; i < tests; ++i) {
       std::array<glm::dvec3, 3> corners{source.point_in_box(), source.point_in_box(),
                                         source.point_in_box()};
-      if (source.uniform(0.0, 1.0) < aimed) {  // moved until its middle is on the ray
+      if (source.uniform(0.0, 1.0) < aimed) {  // move the triangle's centre onto the ray
         const glm::dvec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         for (glm::dvec3& corner : corners) corner += target * (middle.z / target.z) - middle;
       }

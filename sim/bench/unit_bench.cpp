@@ -1,5 +1,5 @@
-// Measures how fast the units are simulated: tests a second on one thread, the median of several
-// runs, and, if valgrind is installed, the instructions of a test. Nothing passes or fails here.
+// Measures how fast the units are simulated: tests per second on one thread (median of several
+// runs) and, if valgrind is installed, instructions per test. This program checks nothing.
 //
 //   unit_bench                           the table
 //   unit_bench ARITH LANES AIMED ROUNDS  only ROUNDS rounds of the stream, for valgrind
@@ -30,10 +30,10 @@ struct Kind {
 constexpr Kind kKinds[] = {{"structural", Arith::kStructural},
                            {"behavioural", Arith::kBehavioural}};
 
-/// Returns tests a second, the median of kRuns runs.
+/// Returns the tests per second, the median of kRuns runs.
 template <class Round>
 double tests_per_second(const Round& round) {
-  round();  // for the caches
+  round();  // warms up the caches
   std::vector<double> rates;
   for (int run = 0; run < kRuns; ++run) {
     const std::clock_t start = std::clock();

@@ -1,7 +1,7 @@
-// The rules of AXI4-Lite at a subordinate's port: each channel's VALID and payload hold until READY; no VALID in reset;
-// a write is answered once, after its address and its data were taken, a read once, after its address.
+// The rules of AXI4-Lite at a subordinate's port: each channel's VALID and payload hold until READY. VALID is low in
+// reset. A write gets one response, after address and data were taken. A read gets one response, after its address.
 //
-// Inputs: the manager is checked, too. Proofs assume nothing of it.
+// Inputs: also check the manager. Proofs set Inputs to 0, because they assume nothing about the manager.
 // Source: AMBA AXI protocol specification, issue E, A3.2, A3.3, B1.
 module axi_lite_checks #(
   parameter int unsigned AddressWidth = 12,
@@ -24,7 +24,7 @@ module axi_lite_checks #(
   input logic                    rvalid,
   input logic                    rready,
   input logic [33:0]             r,
-  output logic [3:0]             addresses_q,  // taken and not answered; for proofs
+  output logic [3:0]             addresses_q,  // numbers of taken addresses, words, reads without response; for proofs
   output logic [3:0]             words_q,
   output logic [3:0]             reads_q
 );

@@ -1,8 +1,8 @@
-// The rules of AXI4 for a manager's reads: each channel's VALID and payload hold until READY; no VALID in reset; bursts
-// increment, are no wider than the port and stay within 4 KiB; a beat comes only for a requested burst, and RLAST with
-// the last beat, by ARLEN. Here an ID has one burst at a time.
+// The rules of AXI4 for a manager's reads: each channel's VALID and payload hold until READY. VALID is low in reset.
+// Bursts have type INCR, are no wider than the port and stay within 4 KiB. A beat comes only for a requested burst, and
+// RLAST exactly with the last beat by ARLEN. In addition to AXI4's rules, an ID has at most one burst in flight.
 //
-// Inputs: the subordinate is checked, too; Last: its RLAST, too.
+// Inputs: also check the subordinate. Last: also check RLAST.
 // Source: AMBA AXI protocol specification, issue E, A3.2 to A3.4, A5.
 module axi_read_checks #(
   parameter int unsigned IdWidth   = 6,
@@ -25,7 +25,7 @@ module axi_read_checks #(
   input logic [DataWidth+1:0] r,  // RRESP, RDATA
   input logic                 rlast,
   output logic [2**IdWidth-1:0]   open_q,  // for each ID: a burst is in flight; for proofs
-  output logic [8*2**IdWidth-1:0] left_q   // and how many beats follow the next one
+  output logic [8*2**IdWidth-1:0] left_q   // for each ID: number of beats after the next beat; for proofs
 );
 
   stream_checks #(

@@ -1,8 +1,8 @@
-// The rules of AXI4 for a manager's writes: each channel's VALID and payload hold until READY; no VALID in reset;
-// bursts increment, are no wider than the port and stay within 4 KiB; WLAST comes with the last beat, by AWLEN; an
-// answer comes after its burst's address and last beat. Here all bursts have the same length and the same ID.
+// The rules of AXI4 for a manager's writes: each channel's VALID and payload hold until READY. VALID is low in reset.
+// Bursts have type INCR, are no wider than the port and stay within 4 KiB. WLAST comes exactly with the last beat by
+// AWLEN. A response comes after the burst's address and last beat. All bursts must have the same length and ID.
 //
-// Inputs: the subordinate is checked, too.
+// Inputs: also check the subordinate.
 // Source: AMBA AXI protocol specification, issue E, A3.2 to A3.4.
 module axi_write_checks #(
   parameter int unsigned DataWidth = 128,
@@ -23,9 +23,9 @@ module axi_write_checks #(
   input logic                             bvalid,
   input logic                             bready,
   input logic [1:0]                       bresp,
-  output logic [31:0]                     addresses_q,  // taken and not answered, for proofs
-  output logic [31:0]                     bursts_q,
-  output logic [7:0]                      beat_q  // of the burst that is being written
+  output logic [31:0]                     addresses_q,  // number of taken addresses without response; for proofs
+  output logic [31:0]                     bursts_q,     // number of complete bursts without response; for proofs
+  output logic [7:0]                      beat_q        // number of the next beat in its burst; for proofs
 );
 
   stream_checks #(

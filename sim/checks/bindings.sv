@@ -1,7 +1,7 @@
-// Binds checks to modules of hw/, in every Verilated model (sim/verilate.cmake). Modules that a model lacks are
-// skipped. Widths are those of ports, as netlists have no parameters.
+// Binds checks to modules of hw/ in every Verilated model (sim/verilate.cmake). Modules that a model lacks are skipped.
+// Widths are taken from ports, because netlists have no parameters.
 
-// Some outputs of checks are for proofs alone.
+// Some outputs of checks are only for proofs.
 // verilator lint_off PINCONNECTEMPTY
 
 bind fifo fifo_checks #(
@@ -58,7 +58,7 @@ bind ray_generator stream_checks #(
   .ready(ready_i),
   .data ({direction_o, pixel_o})
 );
-// Without Last: this module's test, unlike the whole core's, answers with RLAST in wrong places.
+// Last is 0, because the test of this module also responds with misplaced RLAST. The test of the whole core does not.
 bind axi_read_manager axi_read_checks #(
   .IdWidth($bits(axi_arid_o)),
   .DataWidth($bits(axi_rdata_i)),

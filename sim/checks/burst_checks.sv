@@ -1,16 +1,16 @@
-// The framing of bursts at a hit-test pipeline. Its user sends whole bursts: first_i after last_i and nowhere else, one
-// direction per burst. The unit closes no more bursts than went in, and gives no more points than it closed bursts with
-// a nearest hit.
+// The framing of bursts at a hit-test pipeline. The user sends complete bursts: first_i only in a burst's first test,
+// last_i only in its last test, one direction per burst. The unit closes no more bursts than it took, and returns no
+// more points than it closed bursts with a nearest hit.
 module burst_checks #(
   parameter int unsigned DirectionWidth = 96
 ) (
   input logic                      clk_i,
   input logic                      rst_ni,
-  input logic                      in_fire,      // a test, at this clock edge
+  input logic                      in_fire,      // a test is taken at this clock edge
   input logic                      first_i,
   input logic                      last_i,
   input logic [DirectionWidth-1:0] direction_i,
-  input logic                      out_fire,     // a result, at this clock edge
+  input logic                      out_fire,     // a result is taken at this clock edge
   input logic [1:0]                report,
   input logic                      closed_o,
   input logic                      found_o,
@@ -19,7 +19,7 @@ module burst_checks #(
 
   logic in_burst_q;
   logic [DirectionWidth-1:0] direction_q;
-  logic [15:0] open_q, pointless_q;  // bursts not closed; nearest hits whose point is to come
+  logic [15:0] open_q, pointless_q;  // number of bursts not closed; number of nearest hits without their point
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

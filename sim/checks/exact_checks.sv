@@ -1,13 +1,13 @@
-// The exact unit reads no digit that a step in flight is still going to write.
+// The exact unit never reads a digit that a step in flight has yet to write.
 module exact_checks #(
   parameter int unsigned AddressWidth = 8
 ) (
   input logic                         clk_i,
   input logic                         rst_ni,
-  input logic                         reads,      // two digits, at this clock edge
+  input logic                         reads,      // two digits are read at this clock edge
   input logic [AddressWidth-1:0]      x_address,
   input logic [AddressWidth-1:0]      y_address,
-  input logic [3:0]                   writes,     // the step in this stage is going to write a digit
+  input logic [3:0]                   writes,     // bit k: the step in stage k + 1 will write a digit
   input logic [3:0][AddressWidth-1:0] addresses
 );
 

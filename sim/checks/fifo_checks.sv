@@ -1,8 +1,8 @@
-// A FIFO's user pushes only if a word is free and pops only if there is a word; valid_o and space_o are right.
+// A FIFO's user pushes only if there is a free place, and pops only if valid_o is set. valid_o and space_o are right.
 module fifo_checks #(
   parameter int unsigned Depth   = 2,
   parameter int unsigned Reserve = 0,
-  parameter bit          Late    = 1'b0  // a word is valid a clock after it was counted
+  parameter bit          Late    = 1'b0  // a word becomes valid one clock later
 ) (
   input logic clk_i,
   input logic rst_ni,

@@ -1,7 +1,7 @@
-// The rules of every valid/ready port: valid is low in reset; once high, it holds, with its data, until ready.
+// The rules of every valid/ready port: valid is low in reset. Once valid is high, valid and data hold until ready.
 //
-// Assertions are immediate, in clocked processes: Verilator samples for concurrent assertions too early, before inputs
-// that change together with the clock edge have settled.
+// The assertions are immediate assertions in clocked processes, not concurrent ones. Verilator samples concurrent
+// assertions too early: before inputs that change together with the clock edge have settled.
 module stream_checks #(
   parameter int unsigned Width = 1
 ) (

@@ -1,6 +1,6 @@
-"""Simulates ray_core_axi, as `make synth VERILOG=1` writes it, in Icarus Verilog with cocotb and cocotbext-axi: `make test LONG=cocotb`.
+"""Simulates ray_core_axi, as written by `make synth VERILOG=1`, in Icarus Verilog with cocotb and cocotbext-axi: `make test LONG=cocotb`.
 
-Exit status 1 if a test of axi_frames.py fails."""
+The exit status is 1 if a test of axi_frames.py fails."""
 
 import pathlib
 import sys

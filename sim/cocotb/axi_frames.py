@@ -1,6 +1,6 @@
-"""Tests frames of ray_core_axi with an AXI memory, a driver of registers and a sink of a stream, all of cocotbext-axi.
+"""Tests frames of ray_core_axi with an AXI memory, an AXI4-Lite driver of registers and an AXI4-Stream sink, all from cocotbext-axi.
 
-The memory has two nodes and three triangles across the x axis; the expected hit of each pixel is calculated here.
+The memory has two nodes and three triangles across the x axis. The expected hit of each pixel is computed in this file.
 """
 
 import itertools
@@ -23,12 +23,12 @@ DONE, BUS_ERROR, RAY_ERROR, WRITE_ERROR = 2, 4, 8, 32
 SIZE = 12  # pixels per side
 STEP = 0.15
 EYE = (-1.0, 1.0, 1.0)
-BASE, RESULTS, ROOM = 0x1000, 0x8000, 400  # addresses, records
-TRIANGLES = {10: (3.0, 0.0, 4.0), 11: (2.0, 0.0, 4.0), 12: (5.0, 4.0, 7.0)}  # x; y and z of the right angle; where its legs end
+BASE, RESULTS, ROOM = 0x1000, 0x8000, 400  # addresses of lines and of the buffer; size of the buffer in results
+TRIANGLES = {10: (3.0, 0.0, 4.0), 11: (2.0, 0.0, 4.0), 12: (5.0, 4.0, 7.0)}  # x; y = z of the right angle; y and z of the legs' ends
 
 
 def node(base, kinds, *boxes):
-    """Returns a node line on a grid of step 1/32 that begins at zero."""
+    """Returns a node line with a grid of step 1/32 from the origin."""
     bits = 0x7A7A7A << 96 | base << 120 | kinds << 148
     return (bits | sum(box << (176 + 48 * n) for n, box in enumerate(boxes))).to_bytes(64, "little")
 
@@ -44,7 +44,7 @@ IMAGE = b"".join((node(1, 0x18, 0xFFFFFF000000, 0x808060000060), node(3, 0x02, 0
 
 
 def expected(x, y):
-    """Returns triangle and t of a pixel's nearest hit, or None; and whether the ray passes no edge closely."""
+    """Returns (triangle, t) of a pixel's nearest hit, or None; and whether the ray keeps a distance from all edges."""
     a, b = -0.8 + STEP * x, -0.8 + STEP * y
     sure = True
     for name, (plane, low, high) in sorted(TRIANGLES.items(), key=lambda item: item[1][0]):
@@ -58,7 +58,7 @@ def expected(x, y):
 
 
 def check(records):
-    """Checks that each pixel has ended once, with the expected hit."""
+    """Checks that each pixel has one final result, with the expected hit."""
     ends = {}
     for words in records:
         kind, error, found = words[0] & 1, words[0] >> 2 & 7, words[0] >> 1 & 1
@@ -81,7 +81,7 @@ def check(records):
 
 
 class Memory(axi.MemoryRegion):
-    """Memory with a part, `broken`, that answers with SLVERR."""
+    """Memory in which the address range `broken` responds with SLVERR."""
 
     broken = range(0)
 
@@ -97,13 +97,13 @@ class Memory(axi.MemoryRegion):
 
 
 def pauses(seed):
-    """Returns an endless iterator: whether to pause, clock by clock."""
+    """Returns an endless iterator over clocks: whether to pause in the clock."""
     chance = random.Random(seed)
     return (chance.random() < 0.4 for _ in itertools.count())
 
 
 class Bench:
-    """The core with its memory, registers' driver and sink."""
+    """The core with memory, driver of registers and stream sink."""
 
     def __init__(self, dut, seed):
         self.dut = dut
@@ -125,7 +125,7 @@ class Bench:
         self.memory.mem[BASE:BASE + len(IMAGE)] = IMAGE
 
     async def write(self, name, *values):
-        """Writes words to a register; each answer must be OKAY."""
+        """Writes words to a register. Each response must be OKAY."""
         for number, value in enumerate(values):
             word = struct.pack("<f", value) if isinstance(value, float) else value.to_bytes(4, "little")
             assert (await self.registers.write(REGISTERS[name] + 4 * number, word)).resp == axi.AxiResp.OKAY
@@ -135,7 +135,7 @@ class Bench:
         return int.from_bytes((await self.registers.read(REGISTERS[name], 4)).data, "little")
 
     async def draw(self, length):
-        """Draws a frame, to the buffer or, if `length` is 0, by the stream; returns its flags."""
+        """Draws a frame, to the buffer or, if `length` is 0, to the stream. Returns the register `flags`."""
         await self.write("size", SIZE << 16 | SIZE)
         await self.write("length", length)
         await self.write("flags", 63)
@@ -165,13 +165,13 @@ async def begin(dut, seed):
 
 
 def in_buffer(bench, count):
-    """Returns results in the buffer."""
+    """Returns the first `count` results in the buffer."""
     return [struct.unpack_from("<8I", bench.memory.mem, RESULTS + 32 * n) for n in range(count)]
 
 
 @cocotb.test()
 async def results_go_to_memory(dut):
-    """Results arrive in the buffer, also if the memory pauses."""
+    """Results arrive in the buffer, even with random pauses on all channels."""
     bench = await begin(dut, 1)
     assert await bench.draw(ROOM) & ~1 == DONE
     check(in_buffer(bench, await bench.read("written")))
@@ -179,7 +179,7 @@ async def results_go_to_memory(dut):
 
 @cocotb.test()
 async def results_go_by_the_stream(dut):
-    """The same results come by AXI4-Stream; TLAST is with each end."""
+    """The same results come by AXI4-Stream. TLAST is set for each final result."""
     bench = await begin(dut, 2)
     assert await bench.draw(0) & ~1 == DONE
     records = []
@@ -193,7 +193,7 @@ async def results_go_by_the_stream(dut):
 
 @cocotb.test()
 async def errors_of_memory_are_told(dut):
-    """SLVERR for a line sets its number and fails the rays that need it; when memory works again, a whole frame comes."""
+    """SLVERR for a line sets error_line, and rays that need the line end with an error. When memory works again, a frame is complete."""
     bench = await begin(dut, 3)
     bench.memory.broken = range(BASE + 3 * 64, BASE + 4 * 64)
     assert await bench.draw(ROOM) & ~1 == DONE | BUS_ERROR | RAY_ERROR

@@ -7,7 +7,7 @@
 
 namespace raygate {
 
-/// Runs operations of one format. Not thread-safe: one per thread.
+/// Runs operations of one format. Not thread-safe: each thread needs its own.
 class FloatCores {
  public:
   virtual ~FloatCores() = default;

@@ -1,12 +1,12 @@
-// Floating-point formats, operations and results as the float cores know them.
+// Floating-point formats, operations and results of the float cores.
 #pragma once
 
 #include <cstdint>
 
 namespace raygate {
 
-/// An IEEE 754 interchange format in small: sign, `exp_bits` of biased exponent, `frac_bits` of
-/// fraction, at most 32 bits in all.
+/// A format encoded like IEEE 754's interchange formats: sign, `exp_bits` of biased exponent,
+/// `frac_bits` of fraction; at most 32 bits in all.
 struct FloatFormat {
   int exp_bits;
   int frac_bits;
@@ -20,9 +20,9 @@ struct FloatFormat {
   constexpr std::uint32_t infinity() const {
     return static_cast<std::uint32_t>(max_field()) << frac_bits;
   }
-  /// The one NaN that the cores give.
+  /// The canonical NaN, the only NaN that the cores return.
   constexpr std::uint32_t quiet_nan() const { return infinity() | 1u << (frac_bits - 1); }
-  /// Returns whether `bits` (at most width() of them) are a NaN of either kind.
+  /// Returns whether `bits` (at most width() bits) are a quiet or signalling NaN.
   constexpr bool is_nan(std::uint32_t bits) const { return (bits & ~sign_bit()) > infinity(); }
   constexpr bool is_signaling(std::uint32_t bits) const {
     return is_nan(bits) && (bits >> (frac_bits - 1) & 1) == 0;

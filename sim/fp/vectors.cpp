@@ -94,8 +94,8 @@ OperandPair PairSource::cancelling() {
 }
 
 OperandPair PairSource::near_boundary() {
-  // Chooses a boundary, which is a significand of one bit more than the format's, and an operand.
-  // The other operand brings the result nearest to the boundary, or is its neighbour.
+  // Chooses a rounding boundary (a significand with one bit more than the format's) and an operand.
+  // The other operand is the number that brings the result nearest to the boundary, or a neighbour.
   const int f = format_.frac_bits;
   const double boundary = std::ldexp(1.0 + std::ldexp(fraction() + 0.5 * below(2), -f), 0);
   const double other = 1.0 + std::ldexp(fraction(), -f);
@@ -123,17 +123,16 @@ OperandPair PairSource::near_range_end() {
 
 namespace {
 
-/// Returns a division whose quotient is as close to a rounding boundary as it can be: significands
-/// a, b in [2^F, 2^(F+1)), F = frac_bits, with a * 2^k = m * b + r, |r| small, where m is odd with
-/// F+2 bits (a midpoint) or even. Given b odd and r, m is r / -b modulo a power of two (after
-/// Matula and McFearin, 2001). `k` is F+1, or F+2 for quotients below 1. Returns {0, 0} if no such
-/// a exists.
+/// Returns significands {a, b} whose quotient is very close to a rounding boundary m / 2^z, or
+/// {0, 0} if there is none. a and b are in [2^F, 2^(F+1)), F = frac_bits; b is odd. m has F+1 bits
+/// (a representable number) or, if `midpoint`, F+2 bits. z is `k` if `midpoint`, else k - 1. `k` is
+/// F+1, or F+2 for quotients below 1. For small odd r, a * 2^z = m * b + r makes the distance from
+/// a / b to the boundary r / (b * 2^z). It follows that m = -r / b modulo 2^z, which gives m and
+/// then a (Matula and McFearin, 2001).
 OperandPair hard_division(FloatFormat format, std::uint32_t b, int r, int k, bool midpoint) {
   const int f = format.frac_bits;
-  std::uint64_t inverse = b;  // of odd b, modulo 2^64: each step doubles the bits that are right
+  std::uint64_t inverse = b;  // 1 / b modulo 2^64: each step doubles the number of correct bits
   for (int i = 0; i < 5; ++i) inverse *= 2 - b * inverse;
-  // A midpoint has F+2 bits and its product with b ends in k zeros; an even m has F+1 bits, and the
-  // product one zero less.
   const int zeros = midpoint ? k : k - 1;
   const int bits = midpoint ? f + 2 : f + 1;
   const std::uint64_t m =

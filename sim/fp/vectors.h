@@ -14,12 +14,12 @@ struct OperandPair {
   std::uint32_t b = 0;
 };
 
-/// Returns all pairs of edge cases: zeros, infinities, NaNs of both kinds, exponents next to the
-/// ends, to 1 and to the distances at which alignment changes, with fractions of no, one, all but
-/// one and all bits, both signs.
+/// Returns all pairs of edge cases: zeros, infinities, quiet and signalling NaNs, and numbers with
+/// exponents near the smallest, near the largest, near that of 1.0, and near the distances from it
+/// at which alignment changes. Fractions are near all zeros, one half and all ones. Both signs.
 std::vector<OperandPair> crossed_edges(FloatFormat format);
 
-/// An endless stream of pairs aimed at `op`, from one seed.
+/// An endless random stream of pairs, with hard cases for `op`, from one seed.
 class PairSource {
  public:
   PairSource(FloatFormat format, FloatOp op, std::uint64_t seed)
@@ -32,11 +32,11 @@ class PairSource {
   std::uint32_t fraction();              // uniform, or runs of ones and zeros
   std::uint32_t any();                   // every class of number
   std::uint32_t number(int field);       // random sign and fraction; field is clamped
-  OperandPair aligned();                 // exponents as far apart as significands overlap
-  OperandPair cancelling();              // magnitudes a few units apart, signs opposite
+  OperandPair aligned();                 // exponents at most frac_bits + 4 apart
+  OperandPair cancelling();              // terms that nearly cancel: a few units in the last place
   OperandPair near_boundary();           // product or quotient next to a rounding boundary
   OperandPair near_range_end();          // result at the edge of overflow or underflow
-  OperandPair hard_quotient();
+  OperandPair hard_quotient();           // quotient as close as possible to a rounding boundary
 
   FloatFormat format_;
   FloatOp op_;

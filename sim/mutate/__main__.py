@@ -20,17 +20,17 @@ import time
 from sim.mutate.netlist import source
 
 
-YOSYS = (sys.executable, "-m", "synth.yosys")  # takes commands
+YOSYS = (sys.executable, "-m", "synth.yosys")  # followed by Yosys commands
 
 
 @dataclasses.dataclass
 class Outcome:
-    """The fate of a core's faults."""
+    """Numbers of a core's faults by outcome, and the surviving faults."""
 
     core: str
     faults: int
     equivalent: int = 0
-    survivors: list[str] = dataclasses.field(default_factory=list)  # lines of the netlist's list
+    survivors: list[str] = dataclasses.field(default_factory=list)  # their lines in the .list file
 
     @property
     def caught(self) -> int:
@@ -45,10 +45,10 @@ def run(command: list[object], **options: object) -> str:
 
 
 def equivalent(netlist: pathlib.Path, fault: str) -> bool:
-    """Returns whether the module in NETLIST.il gives the same outputs with this fault as without, by Yosys and ABC. False if that is not
-    known."""
-    # Registers and black-boxed modules are cut open: their inputs must be equal for any outputs. Only what the fault's mux leads to is
-    # compared.
+    """Returns whether Yosys and ABC prove that the module in NETLIST.il has the same outputs with this fault as without. False if they
+    cannot decide."""
+    # Registers and black-boxed modules are cut out: their inputs must be equal for any outputs. Only outputs that depend on the fault's
+    # multiplexer are compared.
     number, module = re.search(r"-ctrl mutant \d+ (\d+) .*-module (\S+)", fault).groups()
     gates = (f"memory_map; async2sync; dffunmap; expose -evert-dff -evert c:*; cd {module}; "
              "select -set reached w:mutant %co*; delete -output o:* @reached %d; opt_clean; techmap; "
@@ -62,7 +62,7 @@ def equivalent(netlist: pathlib.Path, fault: str) -> bool:
             if error.returncode != -signal.SIGXCPU:
                 raise
             return False
-        # The first check decides most faults at once, or never; the second takes seconds.
+        # The first check decides most faults at once, and the others never. The second check takes seconds.
         for seconds, check in ((1, f"&r {folder}/sound.aig; &cec {folder}/broken.aig"), (10, f"cec {folder}/sound.aig {folder}/broken.aig")):
             said = subprocess.run(["prlimit", f"--cpu={seconds}", *YOSYS, "--abc", check], check=False, text=True,
                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
@@ -89,12 +89,12 @@ def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
     begin = time.monotonic()
     if not test_passes(program, 0, 3600):
         raise ValueError(f"{program}: fails without a fault")
-    limit = round(2 + 1.5 * (time.monotonic() - begin))  # a test that hangs has caught its fault
+    limit = round(2 + 1.5 * (time.monotonic() - begin))  # a test that exceeds the limit has detected its fault
     return [fault for fault in range(1, faults + 1) if test_passes(program, fault, limit)]
 
 
 def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, at_most: float) -> Outcome:
-    """Runs a core's faults. Survivors are checked for equivalence until at most `at_most` percent are left, or all are checked."""
+    """Runs a core's test with each of its faults. Then checks survivors for equivalence, until at most `at_most` percent survive."""
     netlist = netlists / core
     faults = (netlists / f"{core}.list").read_text().splitlines()
     survived = test_survivors(programs / f"{core}_mutants", len(faults))

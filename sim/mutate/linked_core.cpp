@@ -1,4 +1,4 @@
-// make_rtl_core for a program that links its models, one of which is a netlist with faults.
+// make_rtl_core for a program that links the models. One of the models is a netlist with faults.
 #include <utility>
 
 #include "Vray_core_behavioural.h"

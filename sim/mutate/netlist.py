@@ -12,18 +12,18 @@ import sys
 
 from synth import cores, tools, yosys
 
-# Yosys's other modes invert a bit where a neighbour is 0 or 1; two such faults in one netlist make a loop.
+# Yosys's other modes invert a bit if a neighbouring bit is 0 or 1; two such faults in one netlist can form a loop.
 MODES = ("inv", "const0", "const1")
-# Nothing reads such a wire.
+# Wires that nothing reads.
 UNUSED = re.compile(r"-wire \S*\bunused_")
-# Ports of memory cells that may have faults. Yosys writes no Verilog for memories whose ports differ in their clocks or whose asynchronous
-# reads have an enable, nor for tables with computed contents.
+# Ports of memory cells that may have faults. Faults at other ports would give memories that Yosys cannot write as Verilog: with different
+# clocks at their ports, with enables of asynchronous reads, or tables with computed contents.
 MEMORIES = {"memrd": ("ADDR", "DATA"), "memwr": ("ADDR", "DATA", "EN"), "meminit": ()}
 
 
 def source(fault: str) -> str:
-    """Returns FILE:LINE in hw/ for a line of OUT.list: the faulty expression (its source is a range), or else the declaration of the wire
-    or the instance; "" if there is neither."""
+    """Returns FILE:LINE in hw/ for a line of OUT.list: the place of the faulty expression (a source range), or else the declaration of
+    the wire or the instance; "" if the line has neither."""
     found = re.search(r"-src \S*?(hw/\S+?:\d+)\.\d+-", fault) or re.search(r"-src \S*?(hw/\S+?:\d+)", fault)
     return found[1] if found else ""
 
@@ -33,12 +33,12 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     """Writes OUT.v, OUT.list and OUT.il; returns the number of faults. Raises ToolFailed and MissingTool."""
     files = dict.fromkeys(file for core in cores.names() for file in cores.files(core))
     kept = " ".join(f"--blackboxed-module {module}" for module in around)
-    # Yosys also writes localparams and the variables of generate loops as parameters.
+    # Yosys also writes localparams and generate variables as parameters of black-boxed instances; they are removed.
     derived = [f"setparam {' '.join(f'-unset {name}' for name in names)} t:{file.stem}" for file in files if file.stem in around
                if (names := re.findall(r"\b(?:localparam [^=;]*?|genvar +)(\w+) *=", file.read_text()))]
     faults = out.with_suffix(".list")
-    chosen_from = 2 * count + 20  # three in five of the modes that Yosys chooses from are in MODES
-    # $shiftx becomes $shift: written as a part of a word, it would begin outside the word, where Verilator reads other bits.
+    chosen_from = 2 * count + 20  # MODES has three of the five modes that Yosys chooses from
+    # $shiftx becomes $shift: $shiftx would be written as a part-select that may begin outside the word, where Verilator reads other bits.
     yosys.run(f"{yosys.read(files, top, (text.split('=', 1) for text in parameters), kept)}\n"
               "flatten -noscopeinfo\nbwmuxmap\nopt -full\nopt_clean\nchtype -set $shift t:$shiftx\n"
               + "\n".join(derived) + f"\nwrite_rtlil {out}.il\n" + "\n".join(f"tee -q -o {out}.{kind} select -list t:${kind}*" for kind in MEMORIES) +
@@ -51,7 +51,7 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     lines = [line.replace("mutate ", f"mutate -ctrl mutant 16 {number} ", 1)
              for number, line in enumerate(lines, 1)]
     faults.write_text("\n".join(lines) + "\n")
-    # Wires are split into bits: if one bit of a word depends on another, Verilator takes the word for a loop.
+    # Wires are split into bits: if one bit of a word depends on another bit, Verilator would treat the word as a loop.
     yosys.run(f"read_rtlil {out}.il\nscript {faults}\nsplitnets -driver\nopt_clean\nwrite_verilog -noattr {out}.v",
               out.with_suffix(".faults.log"))
     return len(lines)

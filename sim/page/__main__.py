@@ -31,13 +31,13 @@ def described(line: str) -> str:
 
 
 def example() -> list[float]:
-    """Returns I, N and d of the worked example, which is defined only in sim/worked_example.cpp."""
+    """Returns I, N and d of the worked example, read from sim/worked_example.cpp."""
     text = (ROOT / "sim" / "worked_example.cpp").read_text()
     return [float(word.rstrip("f")) for word in re.search(r"kWords = \{([^}]*)\}", text)[1].replace("\n", " ").split(", ")]
 
 
 def verilate(folder: pathlib.Path) -> list[str]:
-    """Writes the unit in C++ into `folder`; returns the lines of the adder's faults."""
+    """Writes the Verilated unit as C++ into `folder`. Returns the lines of the list of the adder's faults."""
     netlist.write(folder / "fp_adder", "fp_adder", [], FAULTS, 1, [])
     gates = (folder / "fp_adder.v").read_text().replace("module fp_adder(", "module fp_adder_gates(", 1)
     (folder / "fp_adder_gates.v").write_text(gates)
@@ -56,7 +56,7 @@ def compile_unit(folder: pathlib.Path) -> str:
     """Returns the unit as JavaScript that contains its WebAssembly."""
     sources = [VERILATOR / "verilated.cpp", VERILATOR / "verilated_threads.cpp", *sorted((folder / "unit").glob("*.cpp")),
                HERE / "unit_page.cpp"]
-    # Debian's Emscripten finds its own parts only with Debian's Node.js or with NODE_PATH.
+    # Debian's Emscripten finds its Node.js modules only with Debian's Node.js or with NODE_PATH.
     environment = {"NODE_PATH": "/usr/share/nodejs", **os.environ}
     subprocess.run(
         ["em++", "-O2", "-std=c++20", "-w", "-include", "cstdint", "-DVL_IGNORE_UNKNOWN_ARCH", "-DVM_TRACE=0", "-iquote", str(ROOT),

@@ -1,7 +1,7 @@
-// Gate-level adder in which one gate may be broken: `make page` puts it in place of hw/fp/fp_adder.
+// Gate-level adder in which one gate may be broken. `make page` uses this file instead of hw/fp/fp_adder.sv.
 //
-// fp_adder_gates is Yosys's netlist of fp_adder in binary32 with single faults (sim/mutate/netlist.py). `mutant`
-// is set by the page: 0 for the sound adder, k for fault k of the netlist's list.
+// fp_adder_gates is Yosys's netlist of fp_adder in binary32 with single faults (sim/mutate/netlist.py). The page sets
+// `mutant` to 0 for the fault-free adder, or to k for fault k in the netlist's list.
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

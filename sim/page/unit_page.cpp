@@ -1,5 +1,5 @@
-// The paper's hit-test unit for the page of `make page`: one test, clock by clock, with a sound
-// adder or one with a broken gate.
+// The paper's hit-test unit for the page of `make page`: one test, clock by clock, with a
+// fault-free adder or an adder with a broken gate.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -21,9 +21,9 @@ struct Row {
 
 }  // namespace
 
-/// Sends I, N and d (seven binary32 words) through the unit; `fault` is 0, or the number of a fault
-/// in the list made with the adder's netlist. Returns ten rows of nine words, one row per clock
-/// edge, valid until the next call.
+/// Sends I, N and d (seven binary32 words) through the unit. `fault`: 0, or the number of a fault
+/// in the list made with the adder's netlist. Returns ten Rows of nine words each, one Row per
+/// clock edge; they are valid until the next call.
 extern "C" const std::uint32_t* run_unit(const std::uint32_t* words, std::uint32_t fault) {
   static std::array<Row, kEdges> rows;
   raygate::Model<Vhit_test_unit_page> unit;

@@ -1,6 +1,6 @@
-"""Checks that every module of hw/ is in a model of sim/: as its top, or instantiated below it.
+"""Checks that every module of hw/ is in a model of sim/: as the model's top, or instantiated below the top.
 
-Prints file: found, expected and exits 1 if one is not, or if there is no module at all."""
+Prints "FILE: found ..., expected ..." for every other module and exits 1. Also exits 1 if there is no module at all."""
 
 import pathlib
 import re
@@ -13,14 +13,14 @@ from synth import cores  # noqa: E402
 
 
 def untested(hardware: list[pathlib.Path], tops: set[str]) -> list[pathlib.Path]:
-    """Returns the modules' files that no top uses."""
+    """Returns the files of modules that no top uses."""
     among = [*hardware, *(ROOT / "sim").glob("test/**/*.sv")]
     seen = {file for top in tops for file in cores.used(top, among)}
     return [file for file in hardware if file not in seen]
 
 
 def main() -> int:
-    """Runs the check, and checks that it can fail. Returns 1 if a module has no test or the check is wrong."""
+    """Runs the check, and verifies that the check can fail. Returns 1 if a module has no test or the check is wrong."""
     hardware = sorted(file for file in ROOT.glob("hw/*/*.sv") if not file.stem.endswith("_pkg"))
     lists = [file.read_text() for file in (ROOT / "sim").glob("**/CMakeLists.txt")]
     tops = {word for text in lists for names in re.findall(r"(?:\bTOP|\bforeach\(\w+) ([\w ]+)", text) for word in names.split()} | {

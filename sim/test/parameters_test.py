@@ -1,6 +1,6 @@
-"""Checks that modules of hw/ refuse, at elaboration, the parameters that their headers rule out.
+"""Checks that modules of hw/ refuse, at elaboration, parameters that their headers exclude.
 
-Prints the module, the parameter and what Verilator said, and exits 1, if one is accepted."""
+If a parameter is accepted, prints the module, the parameter and Verilator's message, and exits 1."""
 
 import pathlib
 import re

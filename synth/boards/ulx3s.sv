@@ -1,7 +1,7 @@
-// ULX3S with an ECP5 85k: board_core behind the board's USB serial port, with its SDRAM.
+// Top of the ULX3S board with an ECP5 85k: board_core, connected to the board's USB serial port and SDRAM.
 //
-// The PLL makes 40 MHz from the oscillator's 25; a bit of the serial line takes 20 clocks, 2 Mbaud. Button FIRE1
-// resets. led[0]: not in reset; led[1]: the serial input is low; led[2]: the serial output is low.
+// The PLL makes 40 MHz from the oscillator's 25 MHz. A bit of the serial line takes 20 clocks: 2 Mbaud. Button FIRE1
+// resets the core. led[0]: not in reset; led[1]: the serial input is low; led[2]: the serial output is low.
 module ulx3s (
   input  wire         clk_25mhz,
   input  wire         btn_fire1,
@@ -51,7 +51,7 @@ module ulx3s (
     .ENCLKOP(1'b0)
   );
 
-  // ---- Reset: released in step with the clock
+  // ---- Reset: released synchronously to the clock
 
   logic [2:0] reset_q;
   wire rst_n;
@@ -64,9 +64,9 @@ module ulx3s (
     else reset_q <= {reset_q[1:0], 1'b1};
   end
 
-  // ---- Words by the serial line
+  // ---- Words over the serial line
 
-  // A word is taken at once: the host sends no more rays than the core holds.
+  // board_core takes every word at once, because the host sends no more rays than the core has room for.
   logic in_valid, in_break, out_valid, out_ready, unused_ready;
   logic [31:0] in_word, out_word;
 
@@ -122,7 +122,7 @@ module ulx3s (
   assign sdram_csn = 1'b0;
   assign sdram_dqm = 2'b00;
 
-  // High in the second half of a clock
+  // The SDRAM's clock is high in the second half of a clock cycle
   ODDRX1F u_sdram_clk (
     .SCLK(clk),
     .RST(1'b0),
@@ -143,7 +143,7 @@ module ulx3s (
 
 endmodule
 
-// The ECP5's cells that are used here, as black boxes: Yosys replaces them by its own.
+// Black boxes of the ECP5 cells used here; Yosys replaces them by its own definitions.
 (* blackbox *)
 module EHXPLLL #(
   parameter CLKI_DIV = 1,

@@ -1,5 +1,5 @@
-// a > b becomes b < a, and a <= b becomes b >= a. Yosys's alumacc would make !(a < b | a == b) and a < b | a == b of
-// them, each with an additional equality.
+// Rewrites a > b as b < a, and a <= b as b >= a. Yosys's alumacc would turn them into !(a < b | a == b) and a < b | a
+// == b, each with an additional equality.
 (* techmap_celltype = "$gt $le" *)
 module swapped #(
   parameter A_SIGNED = 0,

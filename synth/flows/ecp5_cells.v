@@ -1,5 +1,5 @@
-// Cells of the ECP5 for which Yosys has no simulation model: the multiplier, without its registers, and block RAM. For
-// simulation of a netlist, beside Yosys' own ecp5/cells_sim.v (sim/test/verilog/icarus_test.py).
+// Simulation models of ECP5 cells that Yosys's ecp5/cells_sim.v lacks: the multiplier, without registers, and block
+// RAM. Used with cells_sim.v to simulate netlists (sim/test/verilog/icarus_test.py).
 module MULT18X18D (
   input A0, A1, A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, A13, A14, A15, A16, A17,
   input B0, B1, B2, B3, B4, B5, B6, B7, B8, B9, B10, B11, B12, B13, B14, B15, B16, B17,
@@ -18,8 +18,9 @@ module MULT18X18D (
   } = a * b;
 endmodule
 
-// DP16KD as 512 words of 36 bits, as Yosys maps hw/common/ram.sv: port A writes bytes of nine bits, port B reads. Its
-// name differs, as cells_sim.v has an empty DP16KD. A word that is read and written at the same edge is unknown.
+// DP16KD as 512 words of 36 bits, as Yosys uses it for hw/common/ram.sv. Port A writes bytes of nine bits, port B
+// reads. The name differs because cells_sim.v has an empty DP16KD. A word read and written at the same edge reads as
+// unknown.
 module block_ram (
   input ADA13, ADA12, ADA11, ADA10, ADA9, ADA8, ADA7, ADA6, ADA5, ADA4, ADA3, ADA2, ADA1, ADA0,
   input ADB13, ADB12, ADB11, ADB10, ADB9, ADB8, ADB7, ADB6, ADB5, ADB4, ADB3, ADB2, ADB1, ADB0,

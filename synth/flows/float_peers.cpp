@@ -1,5 +1,5 @@
-// Drives a core of float_peers.sv: `bench FILE REPEATS`. FILE has lines of a, b and the right result, binary32 in hexadecimal,
-// to nearest even. Prints "operations clocks differences", where any NaN equals any other. Exit status 1 if the core hangs.
+// `bench FILE REPEATS` drives a core of float_peers.sv. Each line of FILE has a, b and the right result (hexadecimal).
+// Prints the numbers of operations, clocks and wrong results. All NaNs count as equal. Exit status 1: the core hangs.
 #include <cstdio>
 #include <cstdlib>
 #include <vector>

@@ -1,9 +1,9 @@
-// Other projects' float cores and ours, in binary32, behind the same ports: for synth/float_peers.py.
+// Wrappers of this project's and other projects' binary32 cores with the same ports, for synth/float_peers.py.
 //
-// An operation begins in each clock with valid_i and ready_o; its result comes with valid_o, in order. Rounding modes and
-// flags are those of RISC-V (fp_pkg). HardFloat's cores compute in its own recoding, of 33 bits: operands and results
-// are converted. The cores of others are fused multiply-adds: they add with a factor of one, and multiply with an
-// addend of zero, and mapping removes the gates that such a constant makes redundant.
+// An operation begins in each clock with valid_i and ready_o. Results come with valid_o, in order. Rounding modes and
+// flags are encoded as in RISC-V (fp_pkg). HardFloat uses a format of its own ("recoded", 33 bits); the wrapper
+// converts operands and results. The other projects' adders and multipliers are fused multiply-add cores with a factor
+// of 1 or an addend of 0. Mapping removes the gates that these constants make redundant.
 
 `define FLOAT_PEER_PORTS \
   input logic clk_i, rst_ni, valid_i, input logic [31:0] a_i, b_i, input logic [2:0] rounding_mode_i, \
@@ -11,7 +11,7 @@
 
 package float_peers_pkg;
 
-  // IEEE binary32 to HardFloat's recoding.
+  // Converts IEEE binary32 to HardFloat's recoded format.
   function automatic logic [32:0] recoded(logic [31:0] bits);
     logic [8:0]  exponent;
     logic [22:0] fraction;
@@ -25,7 +25,7 @@ package float_peers_pkg;
     return {bits[31], exponent, fraction};
   endfunction
 
-  // HardFloat's recoding to IEEE binary32.
+  // Converts HardFloat's recoded format to IEEE binary32.
   function automatic logic [31:0] decoded(logic [32:0] bits);
     logic [8:0]  exponent = bits[31:23];
     logic        is_special = exponent[8:7] == 2'b11, is_zero = exponent[8:6] == '0;

@@ -1,4 +1,4 @@
-// The enables of a kept memory: bits of a word that are written together are one net after ABC, and become one pin.
+// Write enables of a kept memory. Bits that are written together have one enable net after ABC, and get one pin here.
 (* techmap_celltype = "kept_enables" *)
 module one_pin_a_net #(
   parameter WIDTH = 1

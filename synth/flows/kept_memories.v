@@ -1,7 +1,7 @@
-// Arrays of more than 2,048 bits stay memories, with the registers at their read ports. Their ports become the
-// design's, as there is no SRAM to map them to. Smaller arrays become registers; tables that nothing writes, gates.
-// Each bit of a port is a cell, for Yosys's `expose -evert` makes ports as wide as a black box's default. Enables: see
-// kept_enables.v.
+// Arrays of more than 2,048 bits are kept as memories, including the registers at their read ports. The memory's ports
+// become ports of the design, because there is no SRAM to map to. Smaller arrays become registers, and read-only tables
+// become gates. Each bit of a port is a black-box cell of one bit, because Yosys's `expose -evert` gives ports the
+// default width of the black box. Write enables: see kept_enables.v.
 (* techmap_celltype = "$mem_v2" *)
 module keep_large_memory #(
   parameter MEMID = "",

@@ -1,4 +1,4 @@
-// A memory that is kept, and the bits of its ports: see kept_memories.v.
+// Black boxes of a kept memory and of the bits of its ports: see kept_memories.v.
 (* blackbox, keep *)
 module kept_memory #(
   parameter BITS = 1

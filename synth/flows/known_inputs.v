@@ -1,4 +1,4 @@
-// A multiplexer whose select is known (as in the lowest group of a carry-select adder) is a wire.
+// A multiplexer with a constant select, as in the lowest group of a carry-select adder, becomes a wire.
 module MULTIPLEXER (input WHEN_0, input WHEN_1, input SELECT, output OUT);
   parameter _TECHMAP_CONSTMSK_SELECT_ = 1'b0;
   parameter _TECHMAP_CONSTVAL_SELECT_ = 1'bx;
@@ -6,7 +6,7 @@ module MULTIPLEXER (input WHEN_0, input WHEN_1, input SELECT, output OUT);
   assign OUT = _TECHMAP_CONSTVAL_SELECT_ ? WHEN_1 : WHEN_0;
 endmodule
 
-// A full adder with a constant input becomes gates; other bits of a carry-save adder take a full adder.
+// A bit of a carry-save adder with a constant input becomes gates; any other bit becomes a full adder.
 module CARRY_SAVE (input A, input B, input C, output SUM, output CARRY);
   parameter _TECHMAP_CONSTMSK_A_ = 1'b0;
   parameter _TECHMAP_CONSTMSK_B_ = 1'b0;

@@ -1,4 +1,4 @@
-// The cells of structure.v in the OSU libraries.
+// Maps the cells of structure.v to the cells of the OSU libraries.
 module FULL_ADDER (input A, input B, input C, output SUM, output CARRY);
   FAX1 _TECHMAP_REPLACE_ (.A(A), .B(B), .C(C), .YS(SUM), .YC(CARRY));
 endmodule

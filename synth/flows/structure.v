@@ -1,6 +1,6 @@
-// Stands in for hw/arith/full_adder.sv, multiplexer.sv and carry_save_adder.sv where the paper's
-// structure is to be kept: each full adder and each bit of a multiplexer becomes one cell that no
-// tool looks into.
+// Replaces hw/arith/full_adder.sv, multiplexer.sv and carry_save_adder.sv in flows that keep the
+// paper's structure. Each full adder and each bit of a multiplexer or carry-save adder becomes one
+// black-box cell, which tools do not optimise.
 (* blackbox *)
 module FULL_ADDER (input A, input B, input C, output SUM, output CARRY);
 endmodule

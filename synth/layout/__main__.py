@@ -17,12 +17,12 @@ SECTIONS = ("adders", "multipliers", "cores", "unit")
 
 
 def of_seeds(job: flow.Job, seeds: int) -> list[flow.Job]:
-    """Returns a row of the table: a job for each seed, of which the median counts."""
+    """Returns the jobs of one row of the table, one job per seed. The row shows the median of their delays."""
     return [dataclasses.replace(job, seed=seed) for seed in range(1, seeds + 1)]
 
 
 def section_rows(section: str, library: Library, seeds: int = 3) -> list[list[flow.Job]]:
-    """Returns the rows of one of SECTIONS. `seeds`: for each adder; the other designs are large and get one."""
+    """Returns the rows of one of SECTIONS. `seeds`: number of seeds per adder. The other designs are large and get one seed."""
     reported = catalogue.report_rows()
     designs = {row.design.name: row.design for row in reported}
     if section == "adders":
@@ -60,9 +60,9 @@ def arguments() -> argparse.Namespace:
 
 
 def wanted(given: argparse.Namespace) -> list[list[flow.Job]]:
-    """Returns the rows that the command line asks for."""
+    """Returns the rows that the command line selects."""
     library = catalogue.library(given.targets)
-    _ = library.lef, library.liberty  # raises before anything is made; first the file that only some libraries have
+    _ = library.lef, library.liberty  # raise early if a file is missing; .lef first, because only some libraries have it
     if not 0 < given.density <= 1 or not 0 < given.aspect:
         raise ValueError(f"density {given.density:g} and aspect {given.aspect:g}, expected 0 < density <= 1 and 0 < aspect")
     if given.top is None or given.top in SECTIONS:
@@ -71,7 +71,7 @@ def wanted(given: argparse.Namespace) -> list[list[flow.Job]]:
 
 
 def measure(rows: list[list[flow.Job]], workers: int) -> tuple[list[dict], list[str]]:
-    """Makes all layouts. Returns a record of each row's median seed, without rows whose layouts all failed, and the failures."""
+    """Makes all layouts. Returns a record of the median seed per row, and the failures. Rows without any layout are left out."""
     failures: list[str] = []
     results = runner.run([runner.Job(f"{job.design.name} {job.flow} seed {job.seed}", functools.partial(flow.make, job), told)
                           for row in rows for job in row], workers, failures)
@@ -98,7 +98,7 @@ HEADS = ["design", "flow", "cells", "cells, um2", "core, um2", "density", "wires
 
 
 def table(records: list[dict]) -> list[list[object]]:
-    """Returns the rows of the table, with columns HEADS; wires are estimated if not all are routed."""
+    """Returns the rows of the table, with columns HEADS. For a layout with unrouted nets, lengths and capacitances are estimates."""
     rows = []
     for got in records:
         spread = got["spread"]

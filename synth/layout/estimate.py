@@ -1,7 +1,7 @@
-"""Estimates the wires of a placement before routing: each net is the shortest tree of L-shaped lines between its pins.
+"""Estimates the wires of a placement before routing: each net is a minimum spanning tree of L-shaped lines between its pins.
 
-A line goes vertically in the lowest vertical metal, then across in the next horizontal metal. Detours of
-routing are not included; but a tree branches only at pins, which makes it longer than necessary.
+A line goes vertically in the lowest vertical metal, then horizontally in the next horizontal metal. The estimate ignores detours of
+routing. On the other hand, a tree branches only at pins, and is therefore longer than necessary.
 """
 
 import numpy as np
@@ -10,13 +10,13 @@ from synth.layout.parasitics import taps
 from synth.layout.place import Placement
 from synth.layout.route import RAILS, Wire, Wires
 
-# pF per um of these trees, as magic extracted from the adders' layouts.
+# Capacitance of these trees in pF per um, as extracted by magic from the layouts of the adders.
 FARADS = {"osu035": 6.4e-5, "osu018": 8e-5}
-TREES = 200  # pins: clock and reset have more; they get trees of buffers, which synthesis does not make
+TREES = 200  # most pins of an estimated net. Clock and reset have more and would need buffer trees, which synthesis does not make
 
 
 def wires(placement: Placement) -> Wires:
-    """Returns the wires, with vias, of each net except rails and nets of more than TREES pins, in the form of route.wires."""
+    """Returns the wires and vias of each net, in the form of route.wires. Rails and nets of more than TREES pins are left out."""
     technology = placement.technology
     found = {}
     for net, ends in placement.netlist.nets().items():
@@ -29,7 +29,7 @@ def wires(placement: Placement) -> Wires:
 
 
 def tree(points: list[tuple[float, float]]) -> list[tuple[int, int]]:
-    """Returns the edges of the shortest tree between points, by horizontal plus vertical distance (Prim)."""
+    """Returns the edges of a minimum spanning tree of `points` by Manhattan distance (Prim's algorithm), as pairs of indices."""
     at = np.array(points, float)
     nearest = np.zeros(len(at), int)
     far = np.abs(at - at[0]).sum(axis=1)
@@ -47,7 +47,7 @@ def tree(points: list[tuple[float, float]]) -> list[tuple[int, int]]:
 
 
 def _line(one: tuple, other: tuple, up: str, across: str, layers: list[str]) -> list[Wire]:
-    """Returns the pieces from pin to pin; a pin is layer, x, y."""
+    """Returns the wires and vias from one pin to another. A pin is a tuple of layer, x and y."""
     (first, x0, y0), (last, x1, y1) = one, other
     pieces = [*_contacts(first, up, x0, y0, layers)]
     if y0 != y1:

@@ -1,4 +1,4 @@
-"""Takes one design from its netlist to a layout that is timed with its wires; results are kept in build/synth/layouts."""
+"""Makes the layout of one design from its netlist and times it with its wires. Keeps results in build/synth/layouts."""
 
 import dataclasses
 import json
@@ -9,16 +9,16 @@ from synth.catalogue import Design, Library
 from synth.layout import estimate, lef, netlist, parasitics, place, route
 
 HERE = pathlib.Path(__file__).resolve().parent
-SPARSE = 0.45, 1.3  # density and aspect at which all nets of a multiplier can be routed,
-SPARSER = 0.42, 1.3  # and of the binary32 multiplier
-TIDIED = 1000  # cells: so many nets are rerouted in seconds
+SPARSE = 0.45, 1.3  # density and aspect at which all nets of an integer multiplier can be routed
+SPARSER = 0.42, 1.3  # density and aspect at which all nets of the binary32 multiplier can be routed
+TIDIED = 1000  # most cells of a design whose nets are rerouted; rerouting then takes seconds
 
 
 @dataclasses.dataclass(frozen=True)
 class Job:
-    """A layout to make. `density`: the fraction of the core's rows that cells take; `aspect`: the core's height by its width.
-    Horizontal wires have one metal, vertical wires two, so designs with many wires are better tall.
-    `routed`: whether routing is tried; without it the wires are those of estimate.py."""
+    """A layout to make. `density`: the fraction of the core's rows that cells take. `aspect`: the core's height divided by its width.
+    Designs with many wires are better tall, because horizontal wires have one metal and vertical wires have two.
+    `routed`: whether to route; else the wires are those of estimate.py."""
 
     design: Design
     library: Library
@@ -30,13 +30,13 @@ class Job:
 
     @property
     def folder(self) -> pathlib.Path:
-        """The folder of its results."""
+        """The folder of the layout's results."""
         name = f"{self.design.name}.{self.library.name}.{self.flow}"
         return store.OUT / "layouts" / f"{name}.{self.density:g}.{self.aspect:g}" / f"seed-{self.seed}"
 
 
 def key(job: Job) -> str:
-    """Returns a hash of all that a layout depends on."""
+    """Returns a hash of everything that a layout depends on."""
     files = [*job.design.sources(job.flow == "cells"), job.library.liberty, job.library.lef,
              *job.library.magic, *mapping.files(),
              *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "estimate.py", "route.py", "parasitics.py"))]
@@ -45,8 +45,8 @@ def key(job: Job) -> str:
 
 
 def make(job: Job) -> tuple[dict, bool]:
-    """Returns the delay of the cells alone, with estimated wires and with routed wires (ns), areas (um2), wires (um, pF), failed nets (None
-    if routing was not tried); and whether the result was kept. If nets failed, wires are estimated and there is no routed delay."""
+    """Returns the result, and whether it was kept. The result has the delays (ns) of the cells alone, with estimated wires and with routed
+    wires; areas (um2); wires (um, pF); number of failed nets, None if not routed. If nets failed, there is no delay with routed wires."""
     return store.cached(job.folder, key(job), tools.measured(lambda: _make(job)))
 
 
@@ -89,7 +89,7 @@ def _make(job: Job) -> dict:
 
 
 def _time(job: Job, nets: netlist.Netlist, name: str) -> str:
-    """Returns OpenSTA's report with the wires of NAME.spef; of the cells alone if there is no such file."""
+    """Returns OpenSTA's report with the wires in NAME.spef, or without wires if there is no such file."""
     clock = next((short for short, port in nets.ports.items() if port.name == job.design.clock), "")
     wires = job.folder / f"{name}.spef"
     return mapping.sta(job.design, job.library, job.folder / "placed.v", job.folder / f"{name}.txt",
@@ -97,13 +97,13 @@ def _time(job: Job, nets: netlist.Netlist, name: str) -> str:
 
 
 def outputs(library: Library) -> dict[str, set[str]]:
-    """Returns the output pins of each type of cell, according to Liberty."""
+    """Returns the output pins of each type of cell, from the Liberty file."""
     return {cell.name: {pin.name for pin in cell.of("pin") if pin.attributes.get("direction") == "output"}
             for cell in liberty.read(library.liberty).of("cell")}
 
 
 def load(job: Job) -> tuple[place.Placement, route.Wires]:
-    """Returns a layout that was made, with its routed wires or, if nets failed, with estimated ones."""
+    """Returns the placement and wires of a layout made before. The wires are estimated unless all nets were routed."""
     kept = json.loads((job.folder / "placement.json").read_text())
     placement = place.Placement(netlist.parse(mapping.top_module(job.folder / "netlist.json"), job.design.top),
                                 lef.read(job.library.lef), {name: place.Site(*site) for name, site in kept["cells"].items()},

@@ -1,4 +1,4 @@
-"""Reads LEF: the outlines and pins of a library's cells, the tracks and the sheets of its metal."""
+"""Reads LEF files: outlines and pins of a library's cells; tracks and sheet resistances of its metals."""
 
 import dataclasses
 import pathlib
@@ -17,13 +17,13 @@ class Rect:
 
     @property
     def centre(self) -> tuple[float, float]:
-        """x, y."""
+        """The centre's x and y, um."""
         return (self.left + self.right) / 2, (self.bottom + self.top) / 2
 
 
 @dataclasses.dataclass(frozen=True)
 class Macro:
-    """A cell: its size, and the metal of each signal pin."""
+    """A cell: its size (um), and the metal of each signal pin."""
 
     width: float
     height: float
@@ -32,7 +32,7 @@ class Macro:
 
 @dataclasses.dataclass(frozen=True)
 class Layer:
-    """A layer of wires: the pitch of its tracks and the width of a wire, um; ohms per square."""
+    """A layer of wires: pitch and offset of its tracks (um), width of a wire (um), sheet resistance (ohms per square)."""
 
     pitch: float
     offset: float
@@ -43,7 +43,7 @@ class Layer:
 
 @dataclasses.dataclass(frozen=True)
 class Technology:
-    """What placing and routing need to know of a library."""
+    """The parts of a LEF file that placing and routing need."""
 
     layers: dict[str, Layer]  # lowest first
     macros: dict[str, Macro]
@@ -55,13 +55,13 @@ class Technology:
 
     @property
     def across(self) -> str:
-        """The next layer of horizontal wires above it."""
+        """The lowest layer of horizontal wires above the layer `up`."""
         names = list(self.layers)
         return next(name for name in names[names.index(self.up):] if not self.layers[name].vertical)
 
     @property
     def tracks(self) -> tuple[Layer, Layer]:
-        """The lowest layers of vertical and of horizontal wires, whose tracks pins and ports lie on."""
+        """The lowest layers of vertical and of horizontal wires. Pins and ports lie on their tracks."""
         return self.layers[self.up], next(layer for layer in self.layers.values() if not layer.vertical)
 
 
@@ -95,7 +95,7 @@ def _macro(body: str) -> Macro:
 
 
 def rects(body: str) -> list[Rect]:
-    """Returns all RECTs, each on the LAYER named last before it."""
+    """Returns all RECTs, each with the layer of the last LAYER statement before it."""
     layer, found = "", []
     for name, box in re.findall(r"^\s*(?:LAYER\s+(\w+)|RECT\s+([-\d. ]+?))\s*;", body, re.M):
         if name:

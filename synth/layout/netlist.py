@@ -1,8 +1,8 @@
-"""A mapped netlist as placing and routing want it: cells and nets under short names of their own."""
+"""A mapped netlist for placing and routing, with short names of cells, ports and nets."""
 
 import dataclasses
 
-CONSTANTS = {"0": "gnd", "1": "vdd", "x": "gnd"}  # Yosys's bits -> the rail that holds them
+CONSTANTS = {"0": "gnd", "1": "vdd", "x": "gnd"}  # constant bit in Yosys's JSON -> rail with this value
 
 
 @dataclasses.dataclass(frozen=True)
@@ -25,10 +25,10 @@ class Port:
 
 @dataclasses.dataclass(frozen=True)
 class Netlist:
-    """Cells by their short names (c0, c1, ...), and ports by theirs (p0, p1, ...).
+    """Cells by their short names (c0, c1, ...), and ports by their short names (p0, p1, ...).
 
-    A net is named n1, n2, ..., or after its first port if it has one: qrouter looks for a port by the name of its net. Further ports of one
-    net are not routed.
+    A net has the short name of its first port, because qrouter finds a port by the name of its net. A net without ports is named n1, n2,
+    ... Further ports of a net are not routed.
     """
 
     top: str
@@ -36,7 +36,7 @@ class Netlist:
     ports: dict[str, Port]
 
     def nets(self) -> dict[str, list[tuple[str, str]]]:
-        """Returns the ends of each net: (cell, pin), and ("PIN", port)."""
+        """Returns the ends of each net: (cell, pin) for a cell's pin, ("PIN", port) for a port."""
         found: dict[str, list[tuple[str, str]]] = {}
         for name, port in self.ports.items():
             if port.net == name:
@@ -47,7 +47,7 @@ class Netlist:
         return found
 
     def verilog(self) -> str:
-        """Returns Verilog with these names, so that the timed netlist is the placed one."""
+        """Returns the netlist as Verilog with the short names, to time the netlist as placed."""
         constant = {rail: f"1'b{bit}" for bit, rail in CONSTANTS.items() if bit != "x"}
         lines = [f"module {self.top} ({', '.join(self.ports)});"]
         wires = {net for cell in self.cells.values() for net in cell.pins.values()}

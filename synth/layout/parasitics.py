@@ -1,8 +1,8 @@
-"""Wires as resistors and capacitors: magic's extraction and the routed DEF in, SPEF out.
+"""Converts wires to resistors and capacitors in SPEF, from magic's extraction and the routed DEF.
 
-A net's capacitance is magic's: area, edge and overlap to layers below and to neighbours at each side, by the coefficients of its technology
-file; coupling to neighbours counts once, as if they did not switch. It is spread over the net's wires by their length. Resistances are
-those of LEF's sheets and the technology file's contacts.
+magic computes a net's capacitance from the coefficients of its technology file: area, edge and overlap to lower layers, and coupling to
+neighbours. Coupling counts once, as if neighbours did not switch. The capacitance is distributed over the net's wires by length.
+Resistances follow from LEF's sheet resistances and the technology file's contact resistances.
 """
 
 import dataclasses
@@ -16,8 +16,8 @@ from synth.layout.netlist import Netlist
 from synth.layout.place import Placement
 from synth.layout.route import RAILS, Wire, Wires
 
-# Reads the routed layout, extracts its capacitances to TOP.ext and writes TOP.gds. In GDS the cells are what LEF says of them:
-# pins and obstructions.
+# Reads the routed layout, extracts its capacitances to TOP.ext and writes TOP.gds. The cells in TOP.gds have only the pins and obstructions
+# of the LEF file.
 MAGIC = """drc off
 lef read {lef}
 def read routed.def -labels
@@ -28,20 +28,20 @@ gds write {top}.gds
 quit -noprompt
 """
 Node = tuple[str, float, float]  # layer, x, y
-TOUCH = 0.8  # um: the side of a contact's metal; metal that is no further apart touches
+TOUCH = 0.8  # um: the side of a contact's metal. Contacts at most this far apart touch
 
 
 def extract(netlist: Netlist, lef: pathlib.Path, rc: pathlib.Path, folder: pathlib.Path) -> dict[str, float]:
-    """Returns the capacitance of each net, pF; leaves the layout as GDS in `folder`. `rc`: magic's start-up file."""
+    """Returns the capacitance of each net, pF. Writes the layout as GDS into `folder`. `rc`: magic's start-up file."""
     (folder / "magic.tcl").write_text(MAGIC.format(lef=lef, top=netlist.top))
     tools.run(["magic", "-dnull", "-noconsole", "-rcfile", rc, "magic.tcl"], folder / "magic.log", folder=folder)
     return capacitances((folder / f"{netlist.top}.ext").read_text(), set(netlist.nets()))
 
 
 def capacitances(text: str, nets: set[str]) -> dict[str, float]:
-    """Returns pF of each of `nets` in a cell's .ext file, whose unit is stated in attofarads.
+    """Returns the capacitance (pF) of each of `nets` in a cell's .ext file. The file states its unit in attofarads.
 
-    Metal that merges with a cell's pin is not counted: the library's input capacitance includes it.
+    Metal that merges with a cell's pin is not counted, because the library's input capacitance includes this metal.
     """
     unit = int(re.search(r"^scale \d+ (\d+)", text, re.M).group(1)) * 1e-6
     found = dict.fromkeys(nets, 0.0)
@@ -56,8 +56,8 @@ def capacitances(text: str, nets: set[str]) -> dict[str, float]:
 
 
 def contacts(tech: pathlib.Path, layers: list[str]) -> dict[str, float]:
-    """Returns ohms of the contact on top of each layer but the last, from magic's technology file; a contact that it does not state has the
-    ohms of the contact below."""
+    """Returns the resistance (ohms) of the contact on top of each layer but the last, from magic's technology file. A contact that the file
+    does not list has the resistance of the contact below."""
     text = tech.read_text()
     found: dict[str, float] = {}
     for place, layer in enumerate(layers[:-1], 2):
@@ -67,7 +67,7 @@ def contacts(tech: pathlib.Path, layers: list[str]) -> dict[str, float]:
 
 
 def turned(rect: Rect, cell: tuple[float, float], at: tuple[float, float], how: str) -> Rect:
-    """Returns a rectangle of a cell of that width and height, placed at `at` and turned N, FN, S or FS."""
+    """Returns `rect`, a rectangle in a cell, after placement. `cell`: the cell's width, height; `at`: its corner; `how`: N, FN, S or FS."""
     width, height = cell
     left, right = (width - rect.right, width - rect.left) if how in ("FN", "S") else (rect.left, rect.right)
     low, high = (height - rect.top, height - rect.bottom) if how in ("FS", "S") else (rect.bottom, rect.top)
@@ -76,7 +76,7 @@ def turned(rect: Rect, cell: tuple[float, float], at: tuple[float, float], how: 
 
 @dataclasses.dataclass
 class Tree:
-    """The resistors of one net between its nodes and pins, and the length of wire at each node, um."""
+    """The resistors (ohms) of one net between its nodes and pins, and the length of wire attributed to each node, um."""
 
     resistors: list[tuple[Node | str, Node | str, float]]
     length: dict[Node, float]
@@ -84,7 +84,7 @@ class Tree:
 
 def tree(wires: list[Wire], taps: dict[str, list[Rect]], technology: Technology,
          ohms: dict[str, float]) -> Tree:
-    """Returns a net's resistors; wires are split wherever another wire ends on them. `taps`: the metal of each pin.
+    """Returns the tree of a net. A wire is split wherever another wire ends on it. `taps`: the metal of each pin. `ohms`: of contacts.
 
     Raises ToolFailed if the net is in several pieces.
     """
@@ -113,8 +113,8 @@ def tree(wires: list[Wire], taps: dict[str, list[Rect]], technology: Technology,
 
 def joints(nodes: list[Node], taps: dict[str, list[Rect]],
            resistors: list[tuple]) -> list[tuple[Node | str, Node | str, float]]:
-    """Returns resistors that join pins and pieces of wire that touch: the ends of pieces lie beside each other if qrouter has moved a
-    contact to fit a pin, and a pin's metal joins the wires that arrive at its ends."""
+    """Returns resistors (1 milliohm) that join touching pins and pieces of wire. Pieces may end beside each other, because qrouter moves a
+    contact to fit a pin. Wires that arrive at different ends of a pin are joined by the pin's metal."""
     piece: dict[Node | str, Node | str] = {node: node for node in [*nodes, *taps]}
 
     def root(node: Node | str) -> Node | str:
@@ -139,14 +139,14 @@ def joints(nodes: list[Node], taps: dict[str, list[Rect]],
 
 
 def distance(rects: list[Rect], node: Node) -> float:
-    """Returns the distance from a node to the nearest of the rectangles on its layer, um."""
+    """Returns the distance from a node to the nearest of `rects` on the node's layer, um; infinity if there is none."""
     layer, x, y = node
     return min((max(rect.left - x, x - rect.right, rect.bottom - y, y - rect.top, 0)
                 for rect in rects if rect.layer == layer), default=float("inf"))
 
 
 def taps(placement: Placement, ends: list[tuple[str, str]]) -> dict[str, list[Rect]]:
-    """Returns the metal of a net's pins and ports, by its name in SPEF, in the order of `ends` (Netlist.nets)."""
+    """Returns the metal of a net's pins and ports, by their names in SPEF, in the order of `ends` (an entry of Netlist.nets)."""
     found = {}
     for cell, pin in ends:
         if cell == "PIN":
@@ -161,7 +161,7 @@ def taps(placement: Placement, ends: list[tuple[str, str]]) -> dict[str, list[Re
 
 def spef(placement: Placement, wires: Wires, farads: dict[str, float], ohms: dict[str, float],
          outputs: dict[str, set[str]]) -> str:
-    """Returns SPEF. `farads`: of each net, pF; `ohms`: of contacts; `outputs`: the output pins of each type of cell."""
+    """Returns the text of a SPEF file. `farads`: pF of each net. `ohms`: of contacts. `outputs`: output pins by type of cell."""
     netlist = placement.netlist
     head = {"DATE": "", "VENDOR": "", "PROGRAM": "magic, qrouter", "VERSION": "", "DESIGN_FLOW": ""}
     lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.top}"',

@@ -1,4 +1,4 @@
-"""Draws a layout: cells by the part of the design that they belong to, wires, the slowest path."""
+"""Draws a layout: cells coloured by the part of the design to which they belong, wires, and the slowest path."""
 
 import graphlib
 import pathlib
@@ -12,17 +12,17 @@ from synth.layout.netlist import Netlist
 from synth.layout.place import Placement
 from synth.layout.route import Wires
 
-INCHES = 11  # of the longer side
-METALS = {"metal1": "#203040", "metal2": "#303030", "metal3": "#5a5a5a"}  # higher ones: grey
-BAND = 8  # bits of an adder that share a colour
+INCHES = 11  # length of the die's longer side in the picture
+METALS = {"metal1": "#203040", "metal2": "#303030", "metal3": "#5a5a5a"}  # higher metals: grey
+BAND = 8  # number of adjacent bits of an adder with the same colour
 REST = "the rest"
 
 
 def parts_of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, str]:
     """Returns the part of each cell, in the order of the legend.
 
-    In an adder it is the band of the highest operand bit that the cell depends on, which holds in any mapping; else it is the
-    top's instance with which the cell's name begins, if there is one.
+    The part of an adder's cell is the band of bits with the highest operand bit on which the cell depends; this works for any mapping.
+    In other designs the part is the top's instance in the cell's name, or REST.
     """
     if design.top == "adder":
         bits = highest_bits(netlist, outputs)
@@ -34,7 +34,7 @@ def parts_of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> 
 
 
 def highest_bits(netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, int]:
-    """Returns the highest bit of an operand that each cell of a combinational netlist depends on; 0 if it depends on none."""
+    """Returns, for each cell of a combinational netlist, the highest operand bit on which the cell depends; 0 if none."""
     drivers = {net: name for name, cell in netlist.cells.items() for pin, net in cell.pins.items()
                if pin in outputs[cell.kind]}
     found = {name: int((re.findall(r"\[(\d+)\]", port.name) or [0])[0]) for name, port in netlist.ports.items() if not port.output}
@@ -56,7 +56,7 @@ def draw(placement: Placement, wires: Wires, parts: dict[str, str], path: list[d
     colours = dict(zip(labels, _colours(len(labels)), strict=True))
     axes.add_collection(shapes.PolyCollection([_box(placement, name) for name in placement.cells], edgecolors="white", linewidths=0.4,
                                               facecolors=[colours[parts[name]] for name in placement.cells]))
-    fine = (right - left) * (top - bottom) / 1e5  # um: the larger the die, the thinner its wires
+    fine = (right - left) * (top - bottom) / 1e5  # the larger the die, the thinner the lines
     by_layer: dict[str, list] = {}
     for wire in (wire for pieces in wires.values() for wire in pieces):
         by_layer.setdefault(wire.layer, []).append([(wire.x0, wire.y0), (wire.x1, wire.y1)])
@@ -93,7 +93,7 @@ def _box(placement: Placement, cell: str) -> list[tuple[float, float]]:
 
 
 def _path(axes: plt.Axes, placement: Placement, wires: Wires, path: list[dict], width: float) -> None:
-    """Draws the nets of the path as they are routed, and outlines its cells."""
+    """Draws the wires of the path's nets, and outlines the path's cells."""
     pins = [(cell, pin) for cell, _, pin in (step["pin"].partition("/") for step in path) if cell in placement.cells]
     nets = dict.fromkeys(placement.netlist.cells[cell].pins[pin] for cell, pin in pins)
     lines = [[(wire.x0, wire.y0), (wire.x1, wire.y1)] for net in nets for wire in wires.get(net, [])]

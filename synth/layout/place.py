@@ -1,8 +1,8 @@
 """Places a netlist in rows with Coloquinte, in seconds.
 
-Coloquinte reads and writes the files of the placement contests (bookshelf): .nodes, .nets, .pl, .scl. Its coordinates are whole numbers:
-here x in tracks, y in steps of 1/STEPS of a row's height. A step is longer than a track, so wires across, which have one metal, cost more
-than wires upwards, which have two.
+Coloquinte reads and writes the bookshelf format of placement contests: .nodes, .nets, .pl, .scl. Coordinates are whole numbers: here x in
+tracks, y in steps of 1/STEPS of a row's height. A step is longer than a track. To the placer, horizontal wires (one metal) therefore cost
+more than vertical wires (two metals).
 """
 
 import dataclasses
@@ -14,14 +14,14 @@ from synth import tools
 from synth.layout.lef import Macro, Technology
 from synth.layout.netlist import CONSTANTS, Netlist
 
-FULL = 0.97  # of each row, gaps included: the placer needs some room to put cells into rows
+FULL = 0.97  # most of a row that cells and gaps may take: the placer needs some free space to fill the rows
 STEPS = 9
-EFFORT = 3  # of 9; more takes longer and shortens no wire
+EFFORT = 3  # of 9; more effort takes longer and does not shorten wires
 
 
 @dataclasses.dataclass(frozen=True)
 class Site:
-    """Where a cell is: its lower left corner, um, and how it is turned (N, FN, S or FS)."""
+    """The place of a cell: lower left corner (um), and orientation N, FN, S or FS."""
 
     x: float
     y: float
@@ -30,7 +30,7 @@ class Site:
 
 @dataclasses.dataclass(frozen=True)
 class Placement:
-    """The places of a netlist's cells and ports, by name; the core's width and height, um. Ports lie around the core."""
+    """The places of a netlist's cells and ports by name, and the core's width and height, um. Ports lie around the core."""
 
     netlist: Netlist
     technology: Technology
@@ -44,22 +44,22 @@ class Placement:
         return self.technology.macros[self.netlist.cells[cell].kind]
 
     def corner(self, site: Site) -> tuple[float, float]:
-        """Returns a cell's lower left corner in DEF, um, so that its pins are on tracks, which are at multiples of a pitch."""
+        """Returns a cell's lower left corner in DEF, um. The offset puts the pins on tracks, which are at multiples of a pitch."""
         across, up = self.technology.tracks
         return site.x + across.offset, site.y + up.offset
 
     @functools.cached_property
     def die(self) -> tuple[float, float, float, float]:
-        """The core and four tracks around it, um: left, bottom, right, top."""
+        """The bounds of the core with four tracks around it, um: left, bottom, right, top."""
         across, up = (layer.pitch for layer in self.technology.tracks)
         return -4 * across, -4 * up, (round(self.width / across) + 4) * across, (round(self.height / up) + 4) * up
 
     @functools.cached_property
     def pins(self) -> dict[str, tuple[float, float, str]]:
-        """Each port on a track of its own, at the side where its cells are: x, y, layer."""
+        """The place of each port: x, y (um), layer. A port has a track of its own, on the side of the core near the port's cells."""
         across, up = (layer.pitch for layer in self.technology.tracks)
         left, bottom, right, top = self.die
-        # How far a port is beyond each side; its side is the one with the largest distance.
+        # A port's side is the side that the port is farthest beyond.
         sides: dict[str, list[tuple[float, str]]] = {"left": [], "right": [], "bottom": [], "top": []}
         for name, (x, y) in self.ports.items():
             beyond = {"left": -x, "right": x - self.width, "bottom": -y, "top": y - self.height}
@@ -81,10 +81,10 @@ class Placement:
 
 
 def _spread(wanted: list[tuple[float, str]], last: int) -> list[tuple[int, str]]:
-    """Returns whole places from 1 to `last`, all different, in order, near the wanted places."""
+    """Returns different whole numbers from 1 to `last`, in order, near the wanted numbers."""
     places, low = [], 1
     for count, (at, name) in enumerate(wanted):
-        room = last - (len(wanted) - 1 - count)  # so that the remaining ones find places
+        room = last - (len(wanted) - 1 - count)  # leaves places for the remaining names
         place = min(max(round(at), low), room)
         places.append((place, name))
         low = place + 1
@@ -93,9 +93,9 @@ def _spread(wanted: list[tuple[float, str]], last: int) -> list[tuple[int, str]]
 
 def place(netlist: Netlist, technology: Technology, seed: int, density: float, aspect: float,
           folder: pathlib.Path) -> Placement:
-    """Places the cells twice: without ports, then with ports around the core, near their nets in the first placement.
+    """Places the cells twice: first without ports, then with each port near the place of its net in the first placement.
 
-    `density`: the fraction of the rows that cells take; `aspect`: the core's height by its width.
+    `density`: the fraction of the rows that cells take. `aspect`: the core's height divided by its width.
     """
     pitch = technology.tracks[0].pitch
     macros = {name: technology.macros[cell.kind] for name, cell in netlist.cells.items()}
@@ -106,7 +106,7 @@ def place(netlist: Netlist, technology: Technology, seed: int, density: float, a
     rows = max(1, round(math.sqrt(area * aspect) / height))
     sites = math.ceil(area / (rows * height * pitch))
     widest = max(widths.values())
-    for wider in range(0, widest + 1, max(1, widest // 4)):  # a few cells of one width may not fit into rows of their area
+    for wider in range(0, widest + 1, max(1, widest // 4)):  # few cells may not pack into rows of their total area
         free, _ = _run(netlist, technology, widths, {}, (sites + wider, rows), seed, folder / "free")
         ports = around(netlist, free, (sites + wider, rows * STEPS))
         try:
@@ -120,7 +120,7 @@ def place(netlist: Netlist, technology: Technology, seed: int, density: float, a
     step = height / STEPS
     cells = {}
     for name, (x, y) in found.items():
-        aside = beside[name] if turned[name] in ("FN", "S") else 0  # the gap has been turned to the left side
+        aside = beside[name] if turned[name] in ("FN", "S") else 0  # the gap of a mirrored cell is at its left side
         cells[name] = Site(x * pitch + aside, y * step, turned[name])
     return Placement(netlist, technology, cells, {name: (x * pitch, y * step) for name, (x, y) in ports.items()},
                      sites * pitch, rows * height)
@@ -128,7 +128,7 @@ def place(netlist: Netlist, technology: Technology, seed: int, density: float, a
 
 def _run(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
          core: tuple[int, int], seed: int, stem: pathlib.Path) -> tuple[dict, dict[str, str]]:
-    """Returns each cell's lower left corner and how it is turned; without `ports`, cells are not in rows yet."""
+    """Returns the lower left corner and the orientation of each cell. Without `ports`, places are global: not aligned to rows."""
     for suffix, text in bookshelf(netlist, technology, widths, ports, core).items():
         stem.with_suffix(suffix).write_text(text.format(stem=stem.name))
     solution = stem.with_suffix(".sol")
@@ -145,7 +145,7 @@ def _run(netlist: Netlist, technology: Technology, widths: dict[str, int], ports
 
 def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
               core: tuple[int, int]) -> dict[str, str]:
-    """Returns the files by their suffixes. `widths`: of the cells, in tracks; `core`: its tracks across and its rows."""
+    """Returns the bookshelf files by suffix. `widths`: of the cells, in tracks. `core`: number of tracks per row, number of rows."""
     sites, rows = core
     pitch = technology.tracks[0].pitch
     nodes = [f"{name} {widths[name]} {STEPS}" for name in netlist.cells] + [f"{name} terminal" for name in ports]
@@ -173,7 +173,7 @@ def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], 
 
 
 def around(netlist: Netlist, cells: dict[str, tuple[int, int]], core: tuple[int, int]) -> dict[str, tuple[int, int]]:
-    """Returns the ports at equal distances around the core, in the order in which their nets' cells lie around its middle."""
+    """Returns places for the ports, at equal distances around the core, in order of the angles of their nets' cells around its middle."""
     width, height = core
     angles = {}
     for ends in netlist.nets().values():
@@ -187,7 +187,7 @@ def around(netlist: Netlist, cells: dict[str, tuple[int, int]], core: tuple[int,
 
 
 def _edge(far: float, width: int, height: int) -> tuple[int, int]:
-    """Returns the point at distance `far` along the core's edge, from the middle of its left side downwards."""
+    """Returns the point at distance `far` along the core's edge. The path begins at the middle of the left side and goes downwards."""
     for x, y, dx, dy, length in ((0, height / 2, 0, -1, height / 2), (0, 0, 1, 0, width), (width, 0, 0, 1, height),
                                  (width, height, -1, 0, width), (0, height, 0, -1, height / 2)):
         if far <= length:
@@ -197,9 +197,9 @@ def _edge(far: float, width: int, height: int) -> tuple[int, int]:
 
 
 def gaps(netlist: Netlist, technology: Technology, density: float, pitch: float) -> dict[str, float]:
-    """Returns the gap beside each cell, um, in whole pitches: the larger, the more pins the cell has for its width.
+    """Returns the gap beside each cell, um, a multiple of `pitch`. Cells with many pins for their width get larger gaps.
 
-    Wires crowd where pins do. With their gaps, narrow cells have the same width per pin.
+    Wires are densest where pins are. Including gaps, cells with a gap have the same width per pin.
     """
     widths = {name: technology.macros[cell.kind].width for name, cell in netlist.cells.items()}
     room = sum(widths.values()) * (1 / density - 1)

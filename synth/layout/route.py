@@ -1,4 +1,4 @@
-"""Routes a placement with qrouter: DEF out, DEF with wires back."""
+"""Routes a placement with qrouter: writes DEF, and reads DEF with wires."""
 
 import dataclasses
 import pathlib
@@ -7,21 +7,21 @@ import re
 from synth import tools
 from synth.layout.place import Placement, Site
 
-UNITS = 100  # to the um, in DEF
+UNITS = 100  # DEF units per um
 RAILS = ("gnd", "vdd")
 FILLER = "FILL"
 
 
 @dataclasses.dataclass(frozen=True)
 class Wire:
-    """A straight piece of a net, um; `layer` is its metal, or the metal from which a via leads."""
+    """A straight piece of a net, um, or a via. `layer`: the metal of a piece, or the metal at which a via begins."""
 
     layer: str
     x0: float
     y0: float
     x1: float
     y1: float
-    to: str = ""  # a via: the metal that it leads to
+    to: str = ""  # for a via: the metal at which it ends
 
     @property
     def length(self) -> float:
@@ -29,12 +29,12 @@ class Wire:
         return abs(self.x1 - self.x0) + abs(self.y1 - self.y0)
 
 
-Wires = dict[str, list[Wire]]  # of each net
+Wires = dict[str, list[Wire]]  # by net
 
 
 def route(placement: Placement, lef: pathlib.Path, folder: pathlib.Path, tidy: bool = True) -> tuple[Wires, list[str]]:
-    """Routes a placement. Returns the wires, and the nets that failed. Leaves placed.def and routed.def in `folder`. `tidy`: qrouter
-    reroutes every net twice: wires of a 48-bit adder become 5 % shorter, in twice the time."""
+    """Routes a placement. Returns the wires and the names of failed nets. Writes placed.def and routed.def into `folder`. `tidy`: makes
+    qrouter reroute every net twice. This shortens the wires of a 48-bit adder by 5 % and doubles the time."""
     (folder / "placed.def").write_text(definition(placement))
     fence = "\n".join(f"obstruction {left} {bottom} {right} {top} {layer}"
                       for layer, left, bottom, right, top in fences(placement))
@@ -50,7 +50,7 @@ def route(placement: Placement, lef: pathlib.Path, folder: pathlib.Path, tidy: b
 
 
 def fences(placement: Placement) -> list[tuple]:
-    """Returns obstructions around the core, um, which only wires that lead straight to ports can pass."""
+    """Returns obstructions around the core (layer, left, bottom, right, top; um). Only straight wires to ports can pass them."""
     left, bottom, right, top = placement.die
     across, up = (layer.pitch / 2 for layer in placement.technology.tracks)
     found = []
@@ -64,7 +64,7 @@ def fences(placement: Placement) -> list[tuple]:
 
 
 def fillers(placement: Placement) -> list[Site]:
-    """Returns the places in rows without a cell, for fillers: rails and wells must not be interrupted."""
+    """Returns the places for filler cells: all free places in rows. Fillers continue the rails and wells between cells."""
     filler = placement.technology.macros[FILLER].width
     rows: dict[float, list] = {}
     for name, site in placement.cells.items():
@@ -85,7 +85,7 @@ def _units(value: float) -> int:
 
 
 def definition(placement: Placement) -> str:
-    """Returns the DEF before routing."""
+    """Returns the text of the DEF file before routing."""
     netlist, technology = placement.netlist, placement.technology
     left, bottom, right, top = placement.die
     lines = ["VERSION 5.6 ;", "NAMESCASESENSITIVE ON ;", 'DIVIDERCHAR "/" ;', 'BUSBITCHARS "<>" ;',
@@ -115,7 +115,7 @@ def definition(placement: Placement) -> str:
 
 
 def wires(text: str, layers: list[str]) -> Wires:
-    """Returns the ROUTED pieces of each net of a DEF."""
+    """Returns the ROUTED pieces of each net of a DEF file."""
     found: Wires = {}
     body = re.search(r"^NETS \d+ ;\n(.*?)^END NETS", text, re.M | re.S).group(1)
     units = int(re.search(r"^UNITS DISTANCE MICRONS (\d+)", text, re.M).group(1))

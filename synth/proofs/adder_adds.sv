@@ -1,4 +1,4 @@
-// {carry_o, sum_o} = a_i + b_i + carry_i, for all operands.
+// Claim: {carry_o, sum_o} = a_i + b_i + carry_i for all operands.
 module adder_adds #(
   parameter int unsigned Width = 48,
   parameter int unsigned Arith = arith_pkg::Graded,

@@ -1,4 +1,4 @@
-// rr_arbiter picks a request if there is one: the first at or above `from`, wrapping around at the end.
+// Claim: rr_arbiter grants a request if there is any. It grants the first request at or above `from`, wrapping around.
 module arbiter_is_fair #(
   parameter int unsigned Width = 64,
   localparam int unsigned IndexWidth = $clog2(Width)
@@ -20,7 +20,7 @@ module arbiter_is_fair #(
     .index_o(index)
   );
 
-  logic [IndexWidth-1:0] distance, other_distance;  // counted from `from`
+  logic [IndexWidth-1:0] distance, other_distance;  // from `from` upwards, wrapping around
   assign distance       = index - from;
   assign other_distance = other - from;
 

@@ -1,6 +1,6 @@
-// An array of four lanes: each lane gets its slot of every input and nothing else, each slot of an output is its
-// lane's, and counter_o is the sum of the lanes' events since reset, two clocks later.
-// opened_hit_test_array is the array with its lanes' inputs and outputs, and its counters, as outputs.
+// Claims about an array of four lanes: lane n receives slot n of every input and nothing else. Slot n of every output
+// comes from lane n. counter_o is the sum of the lanes' events from reset to two clocks ago.
+// opened_hit_test_array is the array with the lanes' inputs and outputs, and the counters, as additional outputs.
 module array_is_its_lanes #(
   localparam int unsigned Lanes       = 4,
   localparam int unsigned TagWidth    = 2,
@@ -93,7 +93,7 @@ module array_is_its_lanes #(
     end
   end
 
-  // ---- The counters' sums, for one event: any of the nine, always the same
+  // ---- The sum of one kind of events over all lanes; the kind `counted` is arbitrary and constant
 
   (* anyconst *) logic [3:0] counted;
   logic [5:0] total;

@@ -1,5 +1,5 @@
-// is_beyond compares the numbers that its words stand for, here in units of 2**-149. An exponent of all ones continues
-// the numbers, so that infinity, a t_max without limit, stands for 2**128, which no hit's t reaches.
+// Claim: is_beyond compares the numbers that its operands encode (here as integers, in units of 2**-149). Exponent 255
+// counts as one more exponent of normal numbers: infinity, a t_max without limit, encodes 2**128, above every hit's t.
 module beyond_orders_numbers #(
   localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth,
   localparam int unsigned NumberWidth = 24 + 254

@@ -1,14 +1,14 @@
-// Composition, step 3: the tree's words are the rows' values and nothing else:
-//   the sum of the tree's words = the sum over k of (row[k] + n[k] - n[k] * 2**25) * 4**k, mod 2**48.
-// Shown in two parts, as a sum of so many words is beyond a SAT solver: each word is that for rows of 0
-// plus the row in its place; and the words for rows of 0 add up to the terms of n.
-// With 14 words the row of constants comes first.
-// booth_assembly in synth/prove.py makes "assembly" of the multiplier itself.
+// Composition of the multiplier's proof, step 3. Claim: the words that enter the carry-save tree add up to
+//   the sum over k of (row[k] + n[k] - n[k] * 2**25) * 4**k, modulo 2**48,
+// with row[k] partial product k, and n[k] 1 if digit k is negative. SAT solvers cannot prove this sum at once. The
+// proof has two parts: word k = word k for rows of 0, plus row[k] * 4**k; the words for rows of 0 add up to the terms
+// in n. With 14 words, the first word is the row of constants. Module "assembly" is made of the multiplier by
+// booth_assembly in synth/prove.py.
 module booth_assembly_sums #(
   parameter int unsigned Words = 13
 ) (
   input logic [13*25-1:0] row_values,
-  input logic [11:0]      n           // bit k: digit k is negative; digit 12 never is (step 1)
+  input logic [11:0]      n           // bit k: digit k is negative; digit 12 is not negative (step 1)
 );
 
   logic [48*Words-1:0] words, bare;

@@ -1,5 +1,5 @@
-// Composition, step 1: the recoded digits, from -2 to 2, add up to the multiplier operand `b`: it is the sum over k of
-// digit[k] * 4**k. Also, no digit is both 1 and 2, and the last is not negative.
+// Composition of the multiplier's proof, step 1. Claim: operand b is the sum over k of digit[k] * 4**k, for the recoded
+// digits from -2 to 2. Also, `one` and `two` are never both set for a digit, and the last digit is not negative.
 module booth_digits #(
   parameter int unsigned Width = 24,
   localparam int unsigned Digits = Width / 2 + 1
@@ -18,7 +18,7 @@ module booth_digits #(
     .negative_o(negative)
   );
 
-  // Modulo 4**Digits, which is above every value here
+  // The arithmetic is modulo 4**Digits; all values are below 4**Digits.
   logic [2*Digits-1:0] magnitude, sum;
   always_comb begin
     sum = '0;

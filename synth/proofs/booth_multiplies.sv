@@ -1,4 +1,4 @@
-// product_o = a_i * b_i, for all operands: the whole multiplier at once, for small widths.
+// Claim: product_o = a_i * b_i for all operands. For small widths, the whole multiplier is proven at once.
 module booth_multiplies #(
   parameter int unsigned Width = 8
 ) (

@@ -1,13 +1,14 @@
-// From reset on, for any requests and any order of memory's answers: line_cache compares and looks up each demand
-// request once, and answers it once, with its ray, by memory's line of its number or by an error. Until then the
-// request waits in the queue of hits, or is a target of an entry whose line is pending; that line does not leave
-// before. No line is read while it is here or pending. opened_line_cache is line_cache of two sets and two targets with
-// its registers and memories as outputs. Of memory only the line `number`, any number, is known.
+// Claims, from reset on, for any requests and any order of memory's answers: line_cache looks up and answers each
+// demand request once. The answer has the request's ray, and the line of the requested number or an error. Until the
+// answer, the request is in the queue of hits, or is a target of an entry with a pending line; that line stays in the
+// entry until the answer. A line that is cached or pending is not requested from memory. opened_line_cache is
+// line_cache of two sets and two targets, with registers and memories as outputs. Only one line of memory is modelled:
+// `number`, arbitrary.
 module cache_answers_once #(
   localparam int unsigned Lines = 16,
   localparam int unsigned Ways  = 8,
   localparam int unsigned Width = 2,
-  localparam int unsigned Depth = 16,  // of the queue of hits
+  localparam int unsigned Depth = 16,  // depth of the queue of hits
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned TagWidth = AddressWidth - 1
 ) (
@@ -30,7 +31,7 @@ module cache_answers_once #(
   always_ff @(posedge clk) reset_n <= 1'b1;
 
   (* anyseq *) logic [AddressWidth-1:0] line_number;
-  (* anyconst *) logic [AddressWidth-1:0] number;  // of a line, and its content
+  (* anyconst *) logic [AddressWidth-1:0] number;  // of the modelled line; `content` is the line's content
   (* anyconst *) logic [Width-1:0] content;
 
   logic taken, request_q, demand_q, ray_q, done, set, hit_q, hit_ray, looking;
@@ -43,7 +44,7 @@ module cache_answers_once #(
   logic miss, fill_ready, answer, answer_ray, answer_error, error;
   logic [3:0] miss_entry;
   logic [AddressWidth-1:0] miss_number;
-  logic [Width-1:0] answer_line, line;  // line: the one that leaves
+  logic [Width-1:0] answer_line, line;  // `line`: the line from memory that is being passed to its targets
   logic [Lines-1:0] line_valid, pending, mores;
   logic [1:0] free, rays;
   logic [3:0] nexts;
@@ -51,7 +52,7 @@ module cache_answers_once #(
   logic [3:0] entry, read_q, write_q;
   logic [4:0] count;
   logic [Lines*Width-1:0] words;
-  logic [Lines*TagWidth-1:0] tag_words, tags;  // by set and way, by entry
+  logic [Lines*TagWidth-1:0] tag_words, tags;  // tag_words: by set and way; tags: by entry
   logic [Lines*2-1:0] heads;
   logic [Depth*(1+Width)-1:0] queue;
   logic [Width:0] queued_word;
@@ -133,18 +134,18 @@ module cache_answers_once #(
   end
 
   logic [AddressWidth-1:0] looked_up;
-  logic request, asked, adds_target, hits;  // in this clock; request: a look-up ends
+  logic request, asked, adds_target, hits;  // events of this clock. request: the look-up of a demand request ends
   assign looked_up   = {tag, set};
   assign request     = request_q && done && demand_q;
   assign asked       = miss && miss_ready;
   assign hits        = line_valid[entry] && tags[TagWidth*entry+:TagWidth] == tag;
   assign adds_target = request && !hits;
 
-  // ---- The entries that wait for the line `number`; whether the line that comes is that line
+  // ---- Which entries wait for line `number`, and whether the line being passed to its targets is line `number`
 
   logic [Lines-1:0] is_number;
-  logic came_q;  // the line that leaves is `number`
-  logic [3:0] entry_q;  // of the line that leaves
+  logic came_q;  // the line being passed on is line `number`
+  logic [3:0] entry_q;  // entry of the line being passed on
 
   always_ff @(posedge clk) begin
     if (asked) is_number[miss_entry] <= miss_number == number;
@@ -163,14 +164,14 @@ module cache_answers_once #(
     end
   end
 
-  // ---- The targets: the entry that each waits for, and whether its line has come and leaves
+  // ---- The targets: the entry that each target waits for, and whether the entry's line is being passed to its targets
 
   logic [3:0] entry_0, entry_1;
   always_ff @(posedge clk) begin
     if (adds_target && !target) entry_0 <= entry;
     if (adds_target && target) entry_1 <= entry;
   end
-  logic [1:0] coming;  // for each target: its line leaves, and its entry's list has lost it
+  logic [1:0] coming;  // per target: its line is being passed on, and the target is no longer in its entry's list
   assign coming = {2{draining}} & {draining_target || draining_more, !draining_target || draining_more};
 
   // ---- The watched request
@@ -225,7 +226,7 @@ module cache_answers_once #(
       if (answer) assert (outstanding != '0 && ready);
       assert (outstanding == count + 5'(hit_q) + 5'(request_q && demand_q)
                              + 5'(compare_q && compare_demand_q) + 5'(!free[0]) + 5'(!free[1]));
-      // The request's line does not leave without it
+      // The line of a pending request is not dropped before the request is answered
       if (state == Pending && coming[w_target] && fill_ready) assert (answered);
       if (state == Pending) assert (pending[w_entry] || coming[w_target]);
       if (asked) begin
@@ -237,7 +238,7 @@ module cache_answers_once #(
         end
       end
 
-      // The requests that are compared and looked up, and their sets' tags
+      // The requests in the stages of comparison and look-up, with the tags of their sets
       for (int unsigned w = 0; w < Ways; w++) begin
         if (compare_q) begin
           assert ((changed && changed_way == 3'(w) ? changed_tag : set_tags[TagWidth*w+:TagWidth])
@@ -253,7 +254,7 @@ module cache_answers_once #(
       end
       if (state == LookedUp) assert (request_q && demand_q && looked_up == number && ray_q == w_ray);
 
-      // Invariants: a line is in one entry only; the line `number` has its content
+      // Invariants: a line is in at most one entry; line `number` has the value `content`
       assert ((line_valid & pending) == '0);
       for (int unsigned p = 0; p < Lines; p++) begin
         for (int unsigned q = p + 2; q < Lines; q += 2) begin
@@ -267,7 +268,7 @@ module cache_answers_once #(
         if (pending[p]) begin
           assert (is_number[p] == (tags[TagWidth*p+:TagWidth] == number[AddressWidth-1:1]
                                    && 1'(p % 2) == number[0]));
-          // The list of a pending entry: the latest target, and the target before
+          // The list of a pending entry has the latest target, then the target before
           assert (heads[2*p+1] == ((!free[0] && !coming[0] && entry_0 == 4'(p))
                                    || (!free[1] && !coming[1] && entry_1 == 4'(p))));
           if (!heads[2*p+1]) assert (!mores[p]);

@@ -1,4 +1,4 @@
-// Composition, step 4: a carry-save adder preserves the sum: a + b + c = sum + carry.
+// Composition of the multiplier's proof, step 4. Claim: a carry-save adder preserves the sum: a + b + c = sum + carry.
 module carry_save_preserves #(
   parameter int unsigned Width = 48
 ) (

@@ -1,5 +1,5 @@
-// Composition, step 5: a tree of adders that keep the promise of contracts/carry_save_adder.sv adds
-// up all its rows, each once: sum_o + carry_o = the sum of the rows, modulo 2**Width.
+// Composition of the multiplier's proof, step 5. Claim: a tree of carry-save adders, of which only
+// contracts/carry_save_adder.sv is known, adds each row once: sum_o + carry_o = sum of the rows, modulo 2**Width.
 module carry_save_tree_adds #(
   parameter int unsigned Width = 48,
   parameter int unsigned Rows  = 13

@@ -1,8 +1,8 @@
-// From reset on, whatever a ray core does for its rays and however long: a context belongs to one ray at a time; only
-// rays in the core end; every ray is in one place, and leaves with one end. No queue overflows. A marked ray,
-// which may be any, leaves once, with its mark and with the P that was there when it ended, as P is in the same word of
-// the queue.
-// opened_ray_contexts is contracts/ray_contexts.sv with its registers as outputs.
+// Claims, from reset on, whatever a ray core does for its rays and however long it takes: A context belongs to one ray
+// at a time. Only rays in the core end. Every ray is in one place, and one end result leaves the core per ray. No queue
+// overflows. One arbitrary ray is marked; its end result leaves once and has the mark. The result's P is that of the
+// time when the ray ended, because P and the mark are in the same word of the queue. opened_ray_contexts is
+// contracts/ray_contexts.sv with its registers as outputs.
 module contexts_answer_once #(
   parameter int unsigned Rays = 4,
   localparam int unsigned CtxWidth = $clog2(Rays)
@@ -28,7 +28,7 @@ module contexts_answer_once #(
   always_ff @(posedge clk) reset_n <= 1'b1;
 
   logic ready, started, ending, valid;
-  logic chosen, left;  // a ray was marked, and left
+  logic chosen, left;  // chosen: a ray was marked; left: its end result has left
   logic kind;
   logic [CtxWidth-1:0] started_ctx, ending_ctx;
   logic [Rays-1:0] free_q, active_q;
@@ -84,12 +84,12 @@ module contexts_answer_once #(
 
   initial {chosen, left} = '0;
 
-  // ---- What the user sees: rays that came, and ends that left
+  // ---- What the user sees: rays accepted, and end results delivered
 
-  logic ended, end_offered, offered;  // offered: the marked ray's end
+  logic ended, end_offered, offered;  // offered: the marked ray's end result is at the port
   assign offered  = end_offered && answer_mark;
-  logic [TotalWidth-1:0] in_flight;  // rays that came and have not left
-  logic [Rays-1:0] used;          // contexts whose ray began and has not ended
+  logic [TotalWidth-1:0] in_flight;  // number of rays accepted without an end result delivered
+  logic [Rays-1:0] used;          // contexts with a ray that has started and not ended
   assign ended       = valid && take && kind == ray_core_pkg::ResultEnd;
   assign end_offered = valid && kind == ray_core_pkg::ResultEnd;
 
@@ -119,7 +119,7 @@ module contexts_answer_once #(
 
       if (ended && answer_mark) assert (chosen && !left);
 
-      // Invariants of the marked ray: it is in one place
+      // Invariant of the marked ray: the ray is in exactly one place
       assert (TotalWidth'(chosen) == ones(32'(ray_marks)) + ones(32'(marks)) + TotalWidth'(entering)
                                      + ones(32'(end_marks)) + TotalWidth'(offered) + TotalWidth'(left));
       assert (ray_marks >> rays_count == '0 && end_marks >> ends_count == '0);
@@ -130,7 +130,7 @@ module contexts_answer_once #(
       assert (free_q == ~used && active_q == used);
       assert (TotalWidth'(rays_count) == TotalWidth'(inverses_count) + ones(32'(dividing_q)));
       assert (inverses_valid == (inverses_count != '0));
-      // A memory gives a word one clock later, so a single word may not be valid yet
+      // A queue in a memory has a latency of one clock: a single word may not be at the output yet
       if (rays_count != InCountWidth'(dividing_q[0])) assert (rays_valid);
       if (ends_count > EndCountWidth'(1)) assert (ends_valid);
       if (rays_valid) assert (rays_count != '0);

@@ -1,7 +1,7 @@
-// From reset on, for any manager, the registers' port keeps AXI4-Lite (sim/checks/axi_lite_checks). A plain register
-// changes only by a write to it that is answered OKAY, in the bytes and bits that can be written. A write is refused
-// while rays are generated or traced, and to `base` while lines are read. A read gives the register's value. The
-// watched register may be any. opened_csr is csr with some registers as outputs.
+// Claims, from reset on, for any manager: The register port obeys AXI4-Lite (sim/checks/axi_lite_checks). A plain
+// register changes only in writable bits of enabled bytes, by a write to this register with response OKAY. A write gets
+// SLVERR while rays are generated or traced; for `base`, also while lines are read. A read returns the register's
+// value. The watched register is arbitrary. opened_csr is csr with some registers as outputs.
 module csr_keeps_protocol (
   input logic clk
 );
@@ -13,7 +13,7 @@ module csr_keeps_protocol (
   (* anyseq *) logic [4:0] raised;
   (* anyseq *) logic [27:0] error_number;
   (* anyseq *) logic [ray_core_pkg::NumEvents-1:0] events;
-  (* anyconst *) logic [4:0] number;  // of the word that is watched
+  (* anyconst *) logic [4:0] number;  // number of the watched word
 
   logic reset_n;  // low for the first clock
   initial reset_n = 1'b0;
@@ -111,7 +111,7 @@ module csr_keeps_protocol (
     .reads_q(reads)
   );
 
-  // ---- What the watched word is
+  // ---- The watched word: its value, and its writable bits
 
   logic [1023:0] shown;
   logic [31:0] word, bits;
@@ -132,9 +132,9 @@ module csr_keeps_protocol (
   assign bits = csr_pkg::PlainBits[number];
   always_comb assume (bits != '0);
 
-  // ---- What it should be: a write is done in the clock before its answer comes
+  // ---- The expected value: a write takes effect in the clock before its response
 
-  logic [9:0] address;  // taken last
+  logic [9:0] address;  // the last write address
   logic [31:0] data, mask, word_before, expected;
   logic [3:0] strobes;
   logic busy_before, reading_before, bvalid_before, answered, is_watched, is_base, read_watched;

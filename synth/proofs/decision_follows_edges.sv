@@ -1,7 +1,8 @@
-// Assume that an edge product beyond its bound has the sign of the exact product. Then, in one format, a hit has all
-// three exact edge products on d's side, so the ray, aimed ahead, meets the triangle. A miss has d = 0, or an exact
-// product on the other side or, if d is a NaN, two on different sides. One verdict is given. A hit's V is a normal
-// number of d's sign, whose error is stated. Exact products are any three signs; a zero has neither.
+// Claims about hit_decision. Assumption: a computed edge product u with |u| above its bound has the sign of the exact
+// product. Exactly one of miss, hit and doubt is given. For a hit, all three exact products have the sign of d: the ray
+// meets the triangle in its forward direction. V is then a normal number with the sign of d, and t_error is large
+// enough for V. For a miss, d = 0, or an exact product has the sign opposite to d, or d is a NaN and two exact products
+// have opposite signs. The exact products are modelled by three arbitrary signs; a product of 0 has neither sign.
 module decision_follows_edges #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
@@ -36,7 +37,7 @@ module decision_follows_edges #(
 
   localparam logic [Width-2:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
 
-  // Words of equal sign have the order of their values
+  // Magnitudes are compared as integers: words without their sign bits have the order of their values
   always_comb begin
     for (int unsigned k = 0; k < 3; k++) begin
       assume (!(exact_positive[k] && exact_negative[k]));

@@ -1,10 +1,9 @@
-// In a small format, an edge product that the cores compute and that is beyond its bound has the sign of the exact
-// product, for every ray and record. The exact product is J . E for every E that rounds to the record's words F: at
-// most half a unit in the last place from each.
-//
-// |J_i| < 2, |F_i| < 2 and one |F_i| at least 1, as the set-up scales them; the bound is any number of at least C
-// 2^-(FracWidth+1) |F|_1, C = C1024 / 1024. All sums here are whole numbers, in units of the format's smallest number,
-// or of its square.
+// Claim, for every ray and record in a small format: if |U| exceeds the bound, U has the sign of the exact edge product
+// J . E. J is the ray's direction. E is the exact edge vector. Its components round to the record's words F; therefore
+// |E_i - F_i| is at most half a unit in the last place of F_i. U is J . F as computed by the float cores.
+// Assumed, from scaling at set-up: |J_i| < 2, |F_i| < 2, and at least one |F_i| >= 1. The bound is any number not below
+// C 2^-(FracWidth+1) (|F_0| + |F_1| + |F_2|), with C = C1024 / 1024. All sums here are integers, in units of the
+// format's smallest number or of its square.
 module edge_sign_is_exact #(
   parameter int unsigned ExpWidth  = 4,
   parameter int unsigned FracWidth = 3,
@@ -18,10 +17,10 @@ module edge_sign_is_exact #(
 );
 
   localparam int unsigned Bias = 2 ** (ExpWidth - 1) - 1;
-  localparam int unsigned Whole = FracWidth + Bias + 1;  // bits of a number below 2
+  localparam int unsigned Whole = FracWidth + Bias + 1;  // bits of a number below 2, as an integer
   localparam int unsigned Wide = 2 * Whole + 4;
 
-  // ---- U, as the unit calculates it
+  // ---- U, computed as in the unit
 
   logic [3*Width-1:0] products;
   logic [Width-1:0] sum, u;
@@ -70,7 +69,7 @@ module edge_sign_is_exact #(
     .flags_o(second_flags)
   );
 
-  // ---- Words as whole numbers, and a unit in their last place
+  // ---- whole: the magnitude of a word as an integer; place: the unit in its last place
 
   function automatic [Wide-1:0] whole(input [Width-1:0] word);
     logic [ExpWidth-1:0] exponent;
@@ -83,7 +82,7 @@ module edge_sign_is_exact #(
     place = Wide'(1) << (exponent == '0 ? 0 : exponent - 1'b1);
   endfunction
 
-  // ---- Twice the exact sum, and how much the record's rounding may change it
+  // ---- twice_exact = 2 J . F, exact. unsure >= 2 |J . (E - F)|: E differs from F by the record's rounding
 
   logic [Wide-1:0] twice_exact, unsure, size, one;
   logic below_two, is_large;

@@ -1,6 +1,7 @@
-// For any terms, exact_accumulator's register is the exact sum of a column's terms and of what enters the column
-// (upwards the carry out of the digits so far, downwards the sum above times 2**DigitWidth), and does not overflow. A
-// digit is that sum modulo 2**DigitWidth, balanced. A sum with sure_o is larger than all columns below together can be.
+// Claims for any terms: The register of exact_accumulator is the exact sum of a column's terms and an incoming value,
+// and does not overflow. From low to high columns, the incoming value is the carry out of the column below. From high
+// to low columns, the incoming value is the sum of the column above times 2**DigitWidth. digit_o is the register modulo
+// 2**DigitWidth, as a signed number. If sure_o is set, the sum's magnitude exceeds any total of all columns below.
 // opened_exact_accumulator is exact_accumulator with its register as an output.
 module exact_accumulator_sums #(
   parameter int unsigned DigitWidth = 48,
@@ -34,16 +35,16 @@ module exact_accumulator_sums #(
     .sum_q
   );
 
-  // The term, of two digits of magnitude 2**(DigitWidth-1) at most
+  // The term: a product of two digits with magnitudes of at most 2**(DigitWidth-1)
   logic [Width-1:0] term_word;
   logic signed [Wide-1:0] term, largest;
   assign term_word = sum_word + carry_word;
   assign term      = $signed(term_word);
   assign largest   = Wide'(1) << (2 * DigitWidth - 2);
 
-  // What the unit promises
+  // Assumptions about the user, exact_unit
   logic begun, was_down;
-  logic [7:0] terms;  // of the column
+  logic [7:0] terms;  // number of the column's terms
   initial {begun, was_down, terms} = '0;
   always_ff @(posedge clk) begin
     begun    <= 1'b1;
@@ -59,7 +60,7 @@ module exact_accumulator_sums #(
     assume (!(opens && !first && down && sure));  // the unit stops at a sure sign
   end
 
-  // The sum, in enough bits
+  // The expected sum, in a wider word
   logic signed [Wide-1:0] digit, left, over, above, sum, size;
   assign digit = $signed(digit_word);
   assign left  = sum - digit;
@@ -69,7 +70,7 @@ module exact_accumulator_sums #(
   initial sum = '0;
   always_ff @(posedge clk) sum <= first ? term : !opens ? sum + term : down ? above + term : over + term;
 
-  // Largest magnitude: the column's terms, and what entered the column
+  // Largest magnitudes. bound: of the sum; most: of the incoming value; tail: of the sum of one column's products
   localparam int unsigned SureBit = DigitWidth - 1 + $clog2(Products);
   logic [Wide-1:0] most, bound, tail;
   assign most  = was_down ? Wide'(1) << (SureBit + DigitWidth) : Wide'(Products) << (DigitWidth - 1);
@@ -83,7 +84,7 @@ module exact_accumulator_sums #(
       assert (terms != '0 && terms <= Products);
       assert (negative == sum[Wide-1] && zero == (sum == '0));
       assert (left[DigitWidth-1:0] == '0);
-      // Products 2**(2 DigitWidth - 2) of each column below, in its place: the sum of a geometric series
+      // With B = 2**DigitWidth, the k-th column below adds at most tail / B**k, all together less than tail / (B - 1)
       assert (!sure || $unsigned((size <<< DigitWidth) - size) >= tail);
     end
     cover (begun && sure && was_down);

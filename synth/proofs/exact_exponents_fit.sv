@@ -1,6 +1,8 @@
-// For any constant inputs of exact_exponents: each coordinate and each component of the direction that is not 0 is a
-// whole number of units. It fits in the digits, as does a difference of two. The unit is one of their exponents, and
-// one digit less is not enough. `one` and `limit` fit; their shifts make D one < S limit equivalent to t < limit.
+// Claims for any constant inputs of exact_exponents: Nonzero coordinates are integer multiples of the coordinates'
+// unit, nonzero components of the direction of the direction's unit. These numbers, and differences of two of them, fit
+// in the given digits. A unit is the lowest exponent of its numbers; one digit less is not enough. `one` and `limit`
+// fit, too. Their shifts make D one < S limit equivalent to t = D / S < limit, in the units of coordinates and
+// direction.
 module exact_exponents_fit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
@@ -41,7 +43,7 @@ module exact_exponents_fit #(
     .pair_digits_o        (pair_digits)
   );
 
-  // The words stay; none is infinite, the direction is not 0, a limit is positive
+  // Assumptions: the words are constant and finite, the direction is not 0, the limit is positive
   logic [2:0] clocks;
   initial clocks = '0;
   always_ff @(posedge clk) begin
@@ -60,7 +62,7 @@ module exact_exponents_fit #(
     assume (clocks == '0 || (nonzero[5:3] != '0 && nonzero[24] && !floats[Words-1]));
   end
 
-  // ---- What the unit does with them
+  // ---- Bits of the numbers, and whether each number fits
 
   logic [15:0] coordinate_room, direction_room, pair_room;
   assign coordinate_room = DigitWidth * 16'(coordinate_digits);

@@ -1,4 +1,4 @@
-// exact_product is a b or -a b, as two words.
+// Claim: the two output words of exact_product add up to a b, or to -a b if `negate`, modulo 2**Width.
 module exact_product_multiplies #(
   parameter int unsigned DigitWidth = 6,
   localparam int unsigned Width = 2 * DigitWidth + 3

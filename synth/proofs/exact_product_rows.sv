@@ -1,6 +1,7 @@
-// The words of exact_product's tree are the digits times `a`, and a correction for signs. With d[k] = -2 b[2k+1] +
-// b[2k] + b[2k-1], negated if `negate`, word k is (d[k] a - n[k] + 2**DigitWidth) 4**k, and the last the sum of (n[k]
-// - 2**DigitWidth) 4**k. The sum of d[k] 4**k is +-b. All modulo 2**Width. opened_exact_product shows them.
+// Claims, modulo 2**Width: d[k] = -2 b[2k+1] + b[2k] + b[2k-1] are the Booth digits of b, negated if `negate`. n[k] is
+// bit 2k of `turned`, set for complemented rows. Word k of exact_product's tree is
+//   (d[k] a - n[k] + 2**DigitWidth) 4**k, and the last word is the sum over k of (n[k] - 2**DigitWidth) 4**k.
+// The sum of d[k] 4**k is b, or -b if `negate`. opened_exact_product has `rows` and `turned` as outputs.
 module exact_product_rows #(
   parameter int unsigned DigitWidth = 48,
   parameter int unsigned Width = 103,

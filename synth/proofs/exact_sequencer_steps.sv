@@ -1,6 +1,7 @@
-// Whatever signs become known and whenever, exact_sequencer issues each product of an instruction, digit i of x and
-// digit j of y in a term, once, in column i + j, unless the sign is known before. Columns come in order; digits stay
-// within their numbers. opened_exact_sequencer shows its registers. The watched product may be any of an instruction.
+// Claims: An instruction adds terms x y. For each term, exact_sequencer issues the product of digit i of x and digit j
+// of y once, in column i + j, unless the sign of the result is known before. Columns come in order, and digit numbers
+// stay in range, for any time at which signs become known. The watched product is an arbitrary one of an instruction.
+// opened_exact_sequencer is exact_sequencer with its registers as outputs.
 module exact_sequencer_steps #(
   parameter int unsigned Digits = 6,
   localparam int unsigned AddressWidth = $clog2(48 * Digits)
@@ -82,7 +83,7 @@ module exact_sequencer_steps #(
     .advance(advance)
   );
 
-  // ---- What the unit promises: counts that stay while the sequencer is busy
+  // ---- Assumptions about the user, exact_unit: the numbers of digits are constant while the sequencer is busy
 
   logic [19:0] counts, counts_before;
   assign counts = {against, coordinate_digits, direction_digits, pair_digits};
@@ -95,7 +96,7 @@ module exact_sequencer_steps #(
     assume (pair_digits != '0 && pair_digits <= 6'd9);
   end
 
-  // ---- The instruction's kind, whether it goes down, and the digits of its numbers
+  // ---- The instruction: kind, order of columns (down: from high to low), and numbers of digits of x, y and result
 
   logic [2:0] kind;
   logic down, product;
@@ -121,11 +122,11 @@ module exact_sequencer_steps #(
       3'd5: {x_digits, y_digits, terms} = {direction_digits, n, 2'd3};
       default: {x_digits, y_digits, terms} = {fraction, (against == 2'd2) ? fraction : pair_digits, 2'd2};
     endcase
-    // For a number that is loaded, digit i itself is issued, in column i
+    // An instruction that loads a number issues digit i of this number in column i
     if (!product) x_digits = result_digits;
   end
 
-  // ---- The watched product, chosen when its instruction comes
+  // ---- The watched product, chosen when its instruction starts
 
   logic [5:0] w_i, w_j, w_column, here;
   logic [1:0] w_term, seen;
@@ -143,12 +144,12 @@ module exact_sequencer_steps #(
       seen <= seen + 1'b1;
     end
   end
-  assign passed = down ? w_column > here : beyond || w_column < here;  // its column is over
+  assign passed = down ? w_column > here : beyond || w_column < here;  // the watched product's column is complete
   assign past   = w_column == here && !beyond && (i > w_i || (i == w_i && term > w_term));
 
   always_comb begin
     if (reset_n && busy) begin
-      // Columns in order
+      // Columns come in order
       assert (x_last == x_digits - 6'd1 && y_last == y_digits - 6'd1 && last == result_digits - 6'd1);
       assert (beyond || (i <= x_last && j <= y_last));
       assert (beyond || (from_i <= i && j <= from_j && from_i + from_j == here));
@@ -162,7 +163,7 @@ module exact_sequencer_steps #(
       assert (x_digits + y_digits <= 6'd37 && result_digits != '0);
       assert (product || !down);  // as in all programs
       assert (kind != 3'd7 && (kind != 3'd6 || down));
-      // Each product once, in its column
+      // Each product is issued once, in its column
       assert (!in_range || seen == 2'((passed || past) ? 1 : 0));
       assert (!(advance && fire && !stopped && in_range) || seen + 2'(out) == 2'd1);
       assert (!valid || !product || beyond || (x_digit == i && step[3] == (term == '0 && i == from_i)));

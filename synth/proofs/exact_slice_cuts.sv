@@ -1,4 +1,4 @@
-// exact_slice gives digit `number` of significand * 2**shift.
+// Claim: exact_slice returns digit `number` of significand * 2**shift, in base 2**DigitWidth.
 module exact_slice_cuts #(
   parameter int unsigned SignificandWidth = 24,
   parameter int unsigned MaxShift = 405,

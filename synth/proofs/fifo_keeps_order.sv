@@ -1,7 +1,7 @@
-// From reset on, for any allowed pushes and pops, the FIFO gives the words in the order in which they came, each once
-// (with Memory not before the second clock after they came). It never holds more than Depth words; valid_o and space_o
-// tell whether there are words and whether more than Reserve are free; an output that is valid holds until it is taken.
-// opened_fifo is the FIFO with its registers as outputs, for the induction.
+// Claims, from reset on, for any allowed pushes and pops: The FIFO returns each word once, in order. With Memory, a
+// word leaves at the earliest in the second clock after its push. The FIFO never holds more than Depth words. valid_o:
+// there is a word at the output. space_o: more than Reserve places are free. A valid output word holds until it is
+// popped. opened_fifo is the FIFO with its registers as outputs, for the induction.
 module fifo_keeps_order #(
   parameter int unsigned Depth   = 5,
   parameter int unsigned Reserve = 2,
@@ -44,7 +44,7 @@ module fifo_keeps_order #(
 
   localparam logic [CountWidth-1:0] Full = CountWidth'(Depth);
 
-  logic late;  // the last word was pushed in the clock before, and is not at the memory's output
+  logic late;  // the last word was pushed in the previous clock, and is not at the memory's output yet
   logic [CountWidth-1:0] count;  // words pushed and not popped
   always_ff @(posedge clk) begin
     late <= Memory && reset_n && push;
@@ -56,7 +56,7 @@ module fifo_keeps_order #(
     else assume (!push && !pop);
   end
 
-  // The watched word: what it was, where it went, and how many words are to be popped before it
+  // The watched word: its value, its address, and the number of words to be popped before it
   logic watching;
   logic [Width-1:0] watched;
   logic [IndexWidth-1:0] place;
@@ -84,7 +84,7 @@ module fifo_keeps_order #(
     word_before <= word;
   end
 
-  // Places modulo Depth, of the words that are not at a memory's output
+  // Addresses without wrapping at Depth. A word at a memory's output is no longer counted as stored
   logic at_output;
   logic [CountWidth:0] write_unwrapped, place_unwrapped;
   assign at_output = Memory && valid;

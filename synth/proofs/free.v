@@ -1,4 +1,4 @@
-// Makes a word free that is declared (* anyseq *), or with CONSTANT (* anyconst *): Yosys's reader makes it unknown.
+// Turns a word declared (* anyseq *), or with CONSTANT (* anyconst *), into a free variable of the proof.
 (* techmap_celltype = "$buf" *)
 module free_word #(
   parameter WIDTH = 1

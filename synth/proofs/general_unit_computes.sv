@@ -1,6 +1,6 @@
-// Whatever functions its cores compute, whenever it takes a test, and whatever it did before and gets afterwards: the
-// components that leave the general unit 13, 14 and 15 clocks later are O_k + t I_k with t = -(((d + a Ox) + b Oy) + c
-// Oz) / ((a Ix + b Iy) + c Iz). The next test may come 10 clocks after this one.
+// Claim: for a test taken in any state of general_hit_test_unit, the three output components, 13, 14 and 15 clocks
+// later, are O_k + t I_k with t = -(((d + a Ox) + b Oy) + c Oz) / ((a Ix + b Iy) + c Iz). Other inputs are arbitrary,
+// and so are the functions that the float cores compute. The next test may come 10 clocks after this test.
 module general_unit_computes #(
   localparam int unsigned Width = 32
 ) (
@@ -9,14 +9,14 @@ module general_unit_computes #(
   input logic [Width-1:0] bus
 );
 
-  logic [4:0] age;  // of the test that the first clock takes
+  logic [4:0] age;  // clocks since the test was taken, in the first clock
   initial age = '0;
   always_ff @(posedge clk) if (age != '1) age <= age + 1'b1;
 
   logic ready, output_valid;
   logic [Width-1:0] out;
 
-  general_hit_test_unit dut (  // in any state in which a test is offered and taken
+  general_hit_test_unit dut (  // initially in any state in which a test is offered and taken
     .clk_i(clk),
     .rst_ni(1'b1),
     .valid_i(valid),
@@ -27,16 +27,16 @@ module general_unit_computes #(
   );
   always_comb assume (age != '0 || valid && ready);
 
-  logic [10*Width-1:0] words;  // as they came: d, a b c, Ox Oy Oz, Ix Iy Iz
+  logic [10*Width-1:0] words;  // the test's words, in the order of arrival: d, a b c, Ox Oy Oz, Ix Iy Iz
   always_ff @(posedge clk) if (age < 5'd10) words[Width*age+:Width] <= bus;
 
-  // ---- The component that is due, from the words
+  // ---- The expected component, from the test's words
 
   logic [4*Width-1:0] numerators, divisors;
   logic [Width-1:0] t, moved, component;
 
   assign numerators[0+:Width] = words[0+:Width];
-  assign divisors[0+:Width] = '0;  // not added
+  assign divisors[0+:Width] = '0;  // unused
   for (genvar k = 0; k < 3; k++) begin : gen_product
     logic [Width-1:0] of_origin, of_direction;
     fp_multiplier #(.ConstantRow(1'b1)) u_multiply_origin (

@@ -1,8 +1,9 @@
-// From reset on, for any results of tests at any time, closest_hit loses no sure hit silently. A hit is kept, or has
-// been reported once as a doubt, or its lower bound is above t_max, the least of the user's t_max and the upper bounds
-// of all hits so far. A test without a verdict is reported once as a doubt. P and t are the kept hit's. Tests in flight
-// are counted correctly, and there is room for the doubts of all of them. opened_closest_hit is closest_hit of two rays
-// with its registers and memories as outputs; fifo_keeps_order proves that its queues keep order.
+// Claims, from reset on, for any results of tests at any time: closest_hit loses no sure hit. A sure hit is kept, or
+// has been reported once as a doubt, or its lower bound of t is above t_max. t_max is the minimum of the user's t_max
+// and the upper bounds of t of all hits so far. An undecided test is reported once as a doubt. The output P and t are
+// those of the kept hit. Tests in flight are counted correctly, and the queue has room for a doubt of each.
+// opened_closest_hit is closest_hit of two rays with registers and memories as outputs. fifo_keeps_order proves that
+// its queues keep order.
 module hits_keep_nearest #(
   localparam int unsigned Rays     = 2,
   localparam int unsigned Queue    = 18,
@@ -16,7 +17,7 @@ module hits_keep_nearest #(
   input logic        load_any_hit,
   input logic        test,
   input logic        test_ray,
-  input logic        read,  // a result comes; the unit compares it in the next clock
+  input logic        read,  // a result arrives; the unit compares it with the kept hit in the next clock
   input logic        read_ray,
   input logic [31:0] read_triangle,
   input logic        read_skipped,
@@ -48,11 +49,11 @@ module hits_keep_nearest #(
   logic tests_allowed, traversal_ended, leaf_ended, doubt_valid, end_found, near_tie;
   logic [30:0] traversal_t_max, leaf_t_max, box_t_max;
   logic [Rays-1:0] testing, found_q, any_hit_q;
-  logic [31:0] tag_0, tag_1, result_tag, end_triangle, end_t;  // tag_0, tag_1: a ray's
+  logic [31:0] tag_0, tag_1, result_tag, end_triangle, end_t;  // tag_0, tag_1: tags of rays 0 and 1
   logic [TErrorWidth-1:0] end_t_error;
   logic [TestsWidth-1:0] end_tests;
   logic [95:0] over_point, result_point;
-  logic [95:0] end_point, read_point;  // read_point: of the ray of the clock before
+  logic [95:0] end_point, read_point;  // read_point: P of the ray addressed in the previous clock
   logic read_before;
   logic traversal_ray_q, leaf_ray_q, box_ray_q, traversal_before, leaf_before, box_before;
   logic replace, test_q, test_ray_q, push, doubts_space, doubts_valid;
@@ -139,7 +140,7 @@ module hits_keep_nearest #(
     .counts(counts)
   );
 
-  // ---- The result that is compared, as it came
+  // ---- The result being compared: the inputs of the previous clock
   logic result, result_ray, result_skipped, result_doubt, result_hit;
   logic [31:0] result_triangle, result_t;
   logic [3:0] result_t_error, result_normal_error, result_distance_error;
@@ -155,9 +156,9 @@ module hits_keep_nearest #(
   // ---- Assumptions about the user
 
   logic [Rays-1:0] loaded, any_hit;
-  logic [11:0] flight_0, flight_1;  // a ray's tests in flight
-  logic [TestsWidth-1:0] made_0, made_1;  // its tests
-  logic [30:0] user_0, user_1;  // its t_max at first
+  logic [11:0] flight_0, flight_1;  // tests in flight, of rays 0 and 1
+  logic [TestsWidth-1:0] made_0, made_1;  // number of tests of rays 0 and 1
+  logic [30:0] user_0, user_1;  // the user's t_max of rays 0 and 1
 
   assign result_tag = result_ray ? tag_1 : tag_0;
   always_ff @(posedge clk) begin
@@ -199,9 +200,9 @@ module hits_keep_nearest #(
     end
   end
 
-  // ---- This clock's result
+  // ---- The verdict on the result being compared
 
-  logic good, sure, vague;  // good: of bounded error; vague: neither a sure hit nor a miss
+  logic good, sure, vague;  // good: the error of t is bounded; vague: neither a sure hit nor a sure miss
   logic [TErrorWidth-1:0] t_error;
   assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_t_error), result_normal_error);
   assign t_error = set_up_pkg::t_error_exponent(TErrorWidth'(result_t_error), result_normal_error,
@@ -209,7 +210,7 @@ module hits_keep_nearest #(
   assign sure  = result && !result_skipped && result_hit && good;
   assign vague = result && !result_skipped && (result_doubt || (result_hit && !good));
 
-  // Exact bounds
+  // Bounds of the exact t, as bit patterns of floats
   logic signed [33:0] low, high;
   assign low  = $signed({2'b00, result_t}) - $signed(34'd1 << t_error);
   assign high = $signed({2'b00, result_t}) + $signed(34'd1 << t_error);
@@ -223,7 +224,7 @@ module hits_keep_nearest #(
   logic [TErrorWidth-1:0] w_error;
   logic [95:0] w_point;
   logic signed [33:0] w_low, w_high;
-  logic [30:0] w_t_max;  // of its ray
+  logic [30:0] w_t_max;  // t_max of the watched hit's ray
   logic ousted;
   initial state = Nowhere;
 

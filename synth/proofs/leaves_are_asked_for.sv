@@ -1,8 +1,8 @@
-// From reset on, for any groups of leaves that rays enter and any waiting rays: a group's triangles are requested in
-// order, near leaves first, each once, by the lines that the group gives. If one is not requested, its leaf was beyond
-// the ray's t_max, or the ray had ended, in the clock in which it was dropped. Until then the ray counts as
-// leaf_pending. No more groups wait than there is room for. opened_primitive_fetch is primitive_fetch of two rays with
-// its registers and its queue as outputs.
+// Claims, from reset on, for any groups of leaves that rays enter: primitive_fetch requests the triangles of a group in
+// order, near leaves first, each once, by the line numbers in the group. A triangle is dropped without a request only
+// in a clock in which its leaf is beyond the ray's t_max, or the ray has ended. A ray is leaf_pending until all
+// triangles of its group are requested or dropped. The queue of groups does not overflow. opened_primitive_fetch is
+// primitive_fetch of two rays with its registers and its queue as outputs.
 module leaves_are_asked_for #(
   localparam int unsigned Rays = 2,
   localparam int unsigned Children = ray_core_pkg::Children,
@@ -22,7 +22,7 @@ module leaves_are_asked_for #(
   input logic [30:0]           t_max,
   input logic                  ended,
   input logic                  ready,
-  input logic                  choose,  // watch triangle `number` of leaf `which` of the group that comes now
+  input logic                  choose,  // watch triangle `number` of leaf `which` of the group arriving in this clock
   input logic [2:0]            which,
   input logic [CountWidth-1:0] number
 );
@@ -85,7 +85,7 @@ module leaves_are_asked_for #(
       if (mask[n]) triangles_of = triangles_of + TotalWidth'(group[EntryWidth*n+:CountWidth]);
     end
   endfunction
-  // Near ones first, and no leaf is empty
+  // Returns whether leaves are in order, near leaves first, and no leaf in the mask is empty
   function automatic logic is_group(logic [GroupWidth-1:0] group, logic [Children-1:0] mask);
     is_group = 1'b1;
     for (int unsigned n = 0; n < Children; n++) begin
@@ -97,14 +97,14 @@ module leaves_are_asked_for #(
     end
   endfunction
 
-  // ---- Assumptions about the user: groups are sorted, and a ray that is leaf_pending gets no other
+  // ---- Assumptions about the user: groups are sorted, and a ray that is leaf_pending enters no further group
 
   always_comb begin
     if (reset_n) assume (!box || box_leaf == '0 || (!leaf_pending[box_ray] && is_group(box_group, box_leaf)));
     else assume (!box);
   end
 
-  // The current group ends: its last triangle is given, or it is dropped.
+  // leaves: the current group ends, because its last triangle is requested or because the rest of the group is dropped
   logic leaves, dropped;
   logic [2:0] nearest;
   always_comb begin
@@ -121,7 +121,7 @@ module leaves_are_asked_for #(
 
   localparam logic [1:0] Nowhere = 2'd0, Queued = 2'd1, Walked = 2'd2;
   logic [1:0] state;
-  logic w_ray, w_place, w_head, given, w_beyond;  // w_head: its group is at the queue's output
+  logic w_ray, w_place, w_head, given, w_beyond;  // w_head: the watched triangle's group is at the queue's output
   logic load, read;
   logic [GroupWidth-1:0] w_group;
   logic [Children-1:0] w_mask;
@@ -169,7 +169,7 @@ module leaves_are_asked_for #(
 
   // ---- Claims
 
-  logic [WordWidth-1:0] first, second, w_word;  // of the queue
+  logic [WordWidth-1:0] first, second, w_word;  // words of the queue: the first two, and that of the watched triangle
   assign second = read_q ? words[2*WordWidth-1:WordWidth] : words[WordWidth-1:0];
   assign first  = queued ? head : second;
   assign w_word = w_head ? head : w_place ? words[2*WordWidth-1:WordWidth] : words[WordWidth-1:0];

@@ -1,6 +1,6 @@
-// nearest_hit, for any tests: after any sure hit of a burst, chosen freely, the hit kept is no farther. A burst has a
-// nearest hit if it had a sure hit. A hit is dropped or replaced silently only if the two are apart by more than their
-// errors; else the hit that is not kept is reported.
+// Claims about nearest_hit, for any tests: after any sure hit of a burst, the kept hit is not farther than this hit. A
+// burst has a nearest hit if and only if the burst had a sure hit. When a sure hit follows a kept hit, the hit that is
+// not kept is reported if and only if the distances of both hits differ by at most the sum of their errors.
 module nearest_hit_keeps_nearest #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -55,7 +55,7 @@ module nearest_hit_keeps_nearest #(
     .payload_o(payload)
   );
 
-  // Bursts are framed as the header of hit_test_pipeline demands
+  // Assumption: first and last frame bursts as the header of hit_test_pipeline requires
   logic in_burst;
   initial in_burst = 1'b0;
   always_ff @(posedge clk) begin
@@ -63,11 +63,11 @@ module nearest_hit_keeps_nearest #(
     else if (valid) in_burst <= !last;
   end
   always_comb assume (!valid || first == !in_burst);
-  // What hit_decision guarantees, see decision_follows_edges
+  // Assumption: what hit_decision guarantees, proven in decision_follows_edges
   localparam logic [3:0] MaxError = 4'(hit_test_pkg::max_grazing(FracWidth));
   always_comb assume (!hit || (!doubt && t_error <= MaxError));
 
-  // The burst's hits so far; the watched hit; the last test and the hit that was kept before it
+  // any: the burst has had a hit; watched: this burst has the watched hit; was_*: the last test, the hit kept before
   logic any, watched, taken, was_sure, was_have, was_doubt, was_hit, was_last;
   logic [3:0] was_tag, was_best_tag;
   logic [Width-1:0] watched_t, was_t, was_best;

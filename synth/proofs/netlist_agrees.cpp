@@ -1,9 +1,9 @@
-// Feeds a netlist and the RTL it was made of the same inputs and compares every output bit. The
-// Verilated module "twins" (made by synth/netlists.py) holds both; differ_o is high if any of their
-// outputs differ.
+// Feeds a netlist and its RTL the same inputs and compares every output bit. The Verilated module
+// "twins" (made by synth/netlists.py) instantiates netlist and RTL; differ_o is high if any of
+// their outputs differ.
 //
-// Inputs: uniform random bits, and words that are hard for float cores: all-ones and all-zeros
-// runs, few bits set, exponents at their ends.
+// Inputs: uniform random bits, and hard words for float cores: runs of ones and of zeros, and
+// smallest and largest exponents.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -1,8 +1,9 @@
-// Whatever functions the pipelined unit's cores compute: V and U_k are (x + y) + z of products of the record's words
-// and the direction's, the verdict is hit_decision's for them, t = d / V, and P_k = (d I_k) / V for a nearest hit. The
-// proof computes these words in one clock and, after the unit's latency, compares them with the words that enter
-// nearest_hit, and with P. opened_hit_test_pipeline is the unit with these as outputs. pipeline_keeps_tags proves that
-// tests come there once and in order, with their tags.
+// Claims, for any functions that the pipelined unit's float cores compute: V and U_k are sums (x + y) + z of the
+// products of the record's words and the direction's components. The verdict is that of hit_decision for V and U_k.
+// Also, t = d / V, and for a nearest hit P_k = (d I_k) / V. The proof computes these words combinationally, and
+// compares them, after the unit's latency, with the words that enter nearest_hit, and with P. opened_hit_test_pipeline
+// is the unit with these words as outputs. pipeline_keeps_tags proves that tests enter nearest_hit once, in order, with
+// their tags.
 module pipeline_computes #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -54,7 +55,7 @@ module pipeline_computes #(
     .point(point)
   );
 
-  // ---- The words of Latency clocks ago, and those of the nearest hit whose P was asked for
+  // ---- The inputs of Latency clocks ago, and the words of the nearest hit for which P is computed
 
   logic [3*Width-1:0] direction, old_dividends;
   logic [RecordWidth-1:0] record;
@@ -66,7 +67,7 @@ module pipeline_computes #(
     .clk_i(clk), .enable_i(1'b1), .data_i({dividends, divisor}),
     .data_o({old_dividends, old_divisor}));
 
-  logic [Latency-1:0] clocks;  // so far, in unary: the words of earlier clocks are undefined
+  logic [Latency-1:0] clocks;  // number of clocks so far, in unary: inputs of clocks before the first are undefined
   initial clocks = '0;
   always_ff @(posedge clk) clocks <= {clocks[Latency-2:0], 1'b1};
 

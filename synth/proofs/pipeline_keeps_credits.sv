@@ -1,6 +1,6 @@
-// From reset on, for any arithmetic, any tests and any taking of results: the pipelined unit pushes no result into a
-// full queue; an offered result stays, with its data, until it is taken. opened_hit_test_pipeline is the unit with its
-// valid bits and its queue's registers as outputs.
+// Claims, from reset on, for any arithmetic, any tests and any back-pressure: the pipelined unit pushes no result into
+// a full queue. An offered result holds, with its data, until it is taken. opened_hit_test_pipeline is the unit with
+// its valid bits and its queue's registers as outputs.
 module pipeline_keeps_credits #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -72,11 +72,11 @@ module pipeline_keeps_credits #(
     .\u_results.write_q (write_q)
   );
 
-  // What may still become a word of results, by the clocks since its test was taken
+  // Bit k: a test taken k clocks ago may still produce a word of results
   logic [Latency-1:1] on_its_way;
   assign on_its_way = {point_q, report != 2'd0 || closed, dividing_q, decided_q, test_q};
 
-  // Clocks since a test was taken last, up to the number after which nothing is in flight
+  // Clocks since the last test was taken, saturating at Latency, when nothing is in flight
   logic [CountWidth-1:0] since;
   always_ff @(posedge clk) begin
     if (!reset_n) since <= CountWidth'(Latency);
@@ -100,7 +100,7 @@ module pipeline_keeps_credits #(
       assert (!push || count_q < CountWidth'(Depth));
       if (waiting) assert (offered && out == out_before);
 
-      // Invariants: the queue holds at most two words, and one for each clock since a test was taken
+      // Invariants: the queue holds at most two words, plus one for each clock since a test was taken
       assert (since != '0 && since <= CountWidth'(Latency));
       for (int unsigned k = 1; k < Latency; k++) begin
         assert (!on_its_way[k] || since <= CountWidth'(k));

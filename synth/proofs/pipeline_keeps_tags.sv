@@ -1,6 +1,6 @@
-// For any arithmetic, the tests that enter the pipelined unit's nearest_hit are the tests taken, each once and in
-// order, with its tag, first_i and last_i. opened_hit_test_pipeline is the unit with what enters nearest_hit as
-// outputs. nearest_hit_keeps_nearest and fifo_keeps_order prove the rest.
+// Claim, for any arithmetic: every test that the pipelined unit takes enters nearest_hit once, in order, with its tag,
+// first_i and last_i. opened_hit_test_pipeline is the unit with the inputs of nearest_hit as outputs.
+// nearest_hit_keeps_nearest and fifo_keeps_order prove the steps from nearest_hit to the results.
 module pipeline_keeps_tags #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -45,7 +45,7 @@ module pipeline_keeps_tags #(
     .\u_nearest.tag_i (nearest_tag)
   );
 
-  logic [Latency:1] taken;  // [n]: n clocks ago
+  logic [Latency:1] taken;  // taken[n]: a test was taken n clocks ago
   logic [Latency*(TagWidth+2)-1:0] what;
   initial taken = '0;
   always_ff @(posedge clk) begin

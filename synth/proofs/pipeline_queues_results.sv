@@ -1,6 +1,6 @@
-// The pipelined unit takes words out of its queue as it put them in: with a wire for a queue, each port of the results
-// is what nearest_hit and the dividers of P give, and there is a result exactly when one of them gives something.
-// fifo_keeps_order proves that a queue keeps words and their order.
+// Claim: the pipelined unit packs its results into words of a queue and unpacks them correctly. The queue is replaced
+// by a wire. Each result port then equals an output of nearest_hit or of the dividers of P, and a result is valid
+// exactly when one of these outputs is valid. fifo_keeps_order proves that a queue keeps words and their order.
 module pipeline_queues_results #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -25,7 +25,7 @@ module pipeline_queues_results #(
   logic [TErrorWidth-1:0] t_error_out, nearest_t_error;
   logic [3*Width-1:0] point_out, point;
 
-  opened_hit_test_pipeline dut (  // with these results as outputs, from any state
+  opened_hit_test_pipeline dut (  // the unit in any state, with the outputs of nearest_hit and the dividers
     .clk_i(clk),
     .rst_ni(reset_n),
     .valid_i(valid_in),

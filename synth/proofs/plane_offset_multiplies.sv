@@ -1,5 +1,5 @@
-// plane_offset is from +- q s / 256, the product truncated: rows and adder give the same as `*`. For steps of few bits:
-// the tree differs from that of 33 bits only in width.
+// Claim: plane_offset with rows and an adder equals its behavioural form, from +- q step / 256 with a truncated
+// product. Proven for steps of few bits; the tree for 33 bits differs only in width.
 module plane_offset_multiplies #(
   parameter int unsigned Width = 8,
   parameter int unsigned PlaneWidth = 11
@@ -11,7 +11,7 @@ module plane_offset_multiplies #(
   input logic                  back
 );
 
-  logic full;  // a clock has gone by
+  logic full;  // at least one clock has passed
   initial full = 1'b0;
   always_ff @(posedge clk) full <= 1'b1;
 

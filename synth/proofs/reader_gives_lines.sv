@@ -1,8 +1,8 @@
-// From reset on, for any memory that answers in any order, with interleaved beats and any errors: the core's memory
-// port keeps AXI4 (sim/checks/axi_read_checks). A read is requested at its line's address and gets one line, with its
-// id: its burst's beats in order, with an error if a beat had one or RLAST did not come with the last beat. There are
-// never more lines than reads. Memory is assumed to send no beat that was not requested. opened_axi_read_manager is the
-// manager of two IDs, two beats per line, with its registers as outputs.
+// Claims, from reset on, for any memory that answers in any order, with interleaved beats and any errors: The core's
+// memory port obeys AXI4 (sim/checks/axi_read_checks). A read is requested at the address of its line. The read returns
+// one line, with the read's id and the beats of its burst in order. The line has an error if a beat had an error, or if
+// RLAST was not set exactly in the last beat. There are never more lines than reads. Assumption: memory sends only
+// requested beats. opened_axi_read_manager is axi_read_manager for two IDs, two beats per line, registers as outputs.
 module reader_gives_lines (
   input logic clk,
   input logic choose  // watch the read taken now
@@ -98,15 +98,15 @@ module reader_gives_lines (
 
   always_comb assume (!rvalid || open[rid]);
 
-  // ---- Reads and lines are counted
+  // ---- Numbers of reads and lines
 
   logic read, given;
-  logic [2:0] reads;  // without a line yet
+  logic [2:0] reads;  // reads whose line has not been taken
   assign read  = read_valid && read_ready;
   assign given = line_valid && line_ready;
   always_ff @(posedge clk) reads <= reset_n ? reads + 3'(read) - 3'(given) : '0;
 
-  // ---- The watched read: its request, its beats, its line at the output
+  // ---- The watched read: its request, its beats, and its line at the output
 
   logic watching, asked, answering, its_id, first_last, second_last, first_error, second_error, error;
   logic [1:0] its_read_id;
@@ -135,11 +135,11 @@ module reader_gives_lines (
   end
   assign error = first_error || first_last || second_error || !second_last;
 
-  // ---- Beats that wait: the first at `read_q`
+  // ---- Queued beats; the first is at `read_q`
 
   logic [258:0] head, next;
-  logic [1:0] waits[2];  // beats of an ID that wait
-  logic [1:0] sent[2];   // that came
+  logic [1:0] waits[2];  // by ID: number of beats in the queue
+  logic [1:0] sent[2];   // by ID: number of beats received
   assign head = queue[259*read_q+:259];
   assign next = queue[259*!read_q+:259];
   for (genvar n = 0; n < 2; n++) begin : gen_id

@@ -1,16 +1,16 @@
-// The sorting network puts any seven words in order and loses none: each word is as often in the output as it was in
-// the input two clocks before.
+// Claims: the sorting network sorts any seven words in ascending order, and loses none: each value occurs in the output
+// as often as in the input two clocks before.
 module sort7_sorts #(
   localparam int unsigned Width = 4
 ) (
   input logic               clk,
   input logic [7*Width-1:0] words,
-  input logic [Width-1:0]   word  // any one of them, or none
+  input logic [Width-1:0]   word  // an arbitrary value, whose occurrences are counted
 );
 
   logic [7*Width-1:0] sorted, words_1, words_q;
   logic [Width-1:0] word_1, word_q;
-  logic begun, full;  // two clocks have gone by
+  logic begun, full;  // full: at least two clocks have passed
   initial {begun, full} = 2'b00;
   always_ff @(posedge clk) begin
     {begun, full} <= {1'b1, begun};

@@ -1,9 +1,10 @@
-// From reset on, for any results of box_unit and any waiting rays: a node that was pushed is requested, once, by the
-// line that its group gives, unless it was beyond the ray's t_max, or the ray had ended or met a node again, in a clock
-// in which the ray's stack was examined. Until then the ray counts as traversing. No group is pushed without room on
-// the ray's own stack or on the shared one, which one ray at a time has, as long as it needs it. A refused ray waits
-// for a ray that has it and traverses, until that ray gives it back. opened_traversal is traversal of two rays, with
-// stacks of two groups and two shared ones, with its state as outputs.
+// Claims, from reset on, for any results of box_unit: A pushed node is requested once, by the line number in its group.
+// Exception: when the ray's stack is examined, nodes beyond the ray's t_max are dropped, and all nodes of a ray that
+// has ended or has met a node twice. A ray is `traversing` until its nodes are requested or dropped. A group is pushed
+// only if there is room, on the ray's own stack or on the shared stack. One ray at a time owns the shared stack, for as
+// long as this ray needs room there. Another ray that needs the shared stack waits until the owner, a traversing ray,
+// releases the stack. opened_traversal is traversal of two rays, with room for two groups each and for two groups in
+// the shared stack, and with its state as outputs.
 module stack_keeps_nodes #(
   localparam int unsigned Rays  = 2,
   localparam int unsigned Depth = 2,
@@ -27,7 +28,7 @@ module stack_keeps_nodes #(
   input logic [Rays-1:0]       testing,
   input logic [30:0]           t_max,
   input logic                  ended,
-  input logic                  choose,  // watch the child `which` of the group pushed now
+  input logic                  choose,  // watch child `which` of the group pushed in this clock
   input logic [2:0]            which
 );
 
@@ -43,7 +44,7 @@ module stack_keeps_nodes #(
   logic t_max_ray;
   logic [AddressWidth-1:0] node_line;
   logic [Rays-1:0] traversing, busy_q, waiting_q;
-  // For each stage: whether it has a picked ray, or a ray that starts; and the ray's number
+  // Per stage: whether the stage has a picked ray or a starting ray, and the number of this ray
   logic picked_q, ray_q, choosing_q, choosing_ray_q, asked_q, asking_ray_q;
   logic next_valid_q, next_started_q, next_ray_q;
   logic [Rays-1:0] ready_q;
@@ -59,7 +60,7 @@ module stack_keeps_nodes #(
   logic [Rays*NextWidth-1:0] nexts_0, nexts_1;
   logic [(Levels-Depth)*Children-1:0] shared_masks;
   logic [(Rays*Depth+Levels-Depth)*GroupWidth-1:0] groups;
-  logic [GroupWidth-1:0] group_q;  // of the requested level
+  logic [GroupWidth-1:0] group_q;  // the group at the requested level
 
   opened_traversal dut (
     .clk_i(clk),
@@ -130,9 +131,9 @@ module stack_keeps_nodes #(
     line_of = group[GroupWidth-1-:AddressWidth] + AddressWidth'(group[EntryWidth*n+CountWidth+:OffsetWidth]);
   endfunction
 
-  // ---- Assumptions about the user: no ray starts twice, nodes come if requested, near children first
+  // ---- Assumptions about the user: no traversing ray starts again, only requested nodes come, near children first
 
-  logic [Rays-1:0] wanted;  // requested nodes that have not come
+  logic [Rays-1:0] wanted;  // per ray: a requested node has not arrived
 
   function automatic logic is_sorted(logic [GroupWidth-1:0] group);
     is_sorted = 1'b1;
@@ -182,7 +183,7 @@ module stack_keeps_nodes #(
                                 : nexts_0[NextWidth*w_ray+EnterWidth+:Children];
   assign kept = groups[GroupWidth*(w_own ? {1'b0, w_ray, w_level[0]} : {2'b10, w_level[0]})+:GroupWidth];
 
-  logic asking, leaving;  // asking: the level of its group is requested; leaving: a node of that level leaves
+  logic asking, leaving;  // asking: the watched node's level is being read; leaving: a node of this level is requested
   logic [Children-1:0] leaving_mask;
   always_ff @(posedge clk) leaving_mask <= mask_q;
   assign asking  = asked_q && asking_ray_q == w_ray && asked_level_q == {1'b0, w_level};
@@ -215,7 +216,7 @@ module stack_keeps_nodes #(
     end
   end
 
-  // For each ray: a node was requested for it, which has not come
+  // away[r]: a node is being requested, or has been requested and has not arrived, for ray r
   logic [Rays-1:0] away, was_refused;
   logic was_released;
   always_comb begin

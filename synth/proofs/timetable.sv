@@ -1,7 +1,7 @@
-// The paper's unit keeps its timetable (figure 9), whenever tests come and whenever it is reset:
-// a test taken k clocks ago has its word k on the bus (k = 1 to 6) or is at its division k - 6
-// (k = 7 to 9); a component is on the output exactly 8, 9 and 10 clocks after; a new test may start
-// exactly when none was taken in the last 6 clocks. The registers' enables come in their clocks.
+// Claim: the paper's unit follows its timetable (figure 9), whenever tests come and whenever the unit is reset. k
+// clocks after a test is taken, word k of the test is on the bus (k = 1 to 6), or division k - 6 is done (k = 7 to 9).
+// A component is at the output exactly 8, 9 and 10 clocks after. The unit is ready exactly when no test was taken in
+// the last 6 clocks. The registers' enables are set in their clocks of the timetable.
 module timetable (
   input logic        clk,
   input logic        reset_n,
@@ -15,7 +15,7 @@ module timetable (
   logic [1:0] step;
   logic clear, accumulate, load_d, divide;
 
-  opened_hit_test_unit dut (  // with the unit's own counters and enables as outputs
+  opened_hit_test_unit dut (  // the unit with its counters and enables as outputs
     .clk_i(clk),
     .rst_ni(reset_n),
     .valid_i(valid),

@@ -1,6 +1,6 @@
-// Whatever functions its cores compute, whenever it takes a test, and whatever it did before and gets afterwards: the
-// components that leave the paper's unit 8, 9 and 10 clocks later are d I_k / (((0 + a Ix) + b Iy) + c Iz). timetable
-// proves that it takes tests when it should.
+// Claim: for a test taken in any state of the paper's unit, the three output components, 8, 9 and 10 clocks later, are
+// (d I_k) / (((0 + a Ix) + b Iy) + c Iz). Other inputs are arbitrary, and so are the functions that the float cores
+// compute. Proof timetable shows when the unit takes tests.
 module unit_computes #(
   localparam int unsigned Width = 32
 ) (
@@ -9,14 +9,14 @@ module unit_computes #(
   input logic [Width-1:0] bus
 );
 
-  logic [3:0] age;  // of the test that the first clock takes
+  logic [3:0] age;  // clocks since the test was taken, in the first clock
   initial age = '0;
   always_ff @(posedge clk) if (age != '1) age <= age + 1'b1;
 
   logic ready, output_valid;
   logic [Width-1:0] out;
 
-  hit_test_unit dut (  // in any state in which a test is offered and taken
+  hit_test_unit dut (  // initially in any state in which a test is offered and taken
     .clk_i(clk),
     .rst_ni(1'b1),
     .valid_i(valid),
@@ -27,10 +27,10 @@ module unit_computes #(
   );
   always_comb assume (age != '0 || valid && ready);
 
-  logic [7*Width-1:0] words;  // as they came: Ix Iy Iz, a b c, d
+  logic [7*Width-1:0] words;  // the test's words, in the order of arrival: Ix Iy Iz, a b c, d
   always_ff @(posedge clk) if (age < 4'd7) words[Width*age+:Width] <= bus;
 
-  // ---- The component that is due, from the words
+  // ---- The expected component, from the test's words
 
   logic [4*Width-1:0] sums;
   logic [Width-1:0] numerator, quotient;

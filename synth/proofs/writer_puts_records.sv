@@ -1,7 +1,7 @@
-// From reset on, for any memory, the port that writes results keeps AXI4 (sim/checks/axi_write_checks). The n-th result
-// since the last rewind is offered once, at base + 32 n, in order, while n is below the length. written_o counts the
-// results that were answered. Memory is assumed to answer no burst that it has not taken. opened_axi_write_manager is
-// the manager with its registers as outputs.
+// Claims, from reset on, for any memory: The port that writes results obeys AXI4 (sim/checks/axi_write_checks). Result
+// n since the last rewind (from 0) is written once, at base + 32 n, in order, while n < length. written_o counts the
+// acknowledged results. Assumption: memory acknowledges only bursts that it has taken. opened_axi_write_manager is
+// axi_write_manager with its registers as outputs.
 module writer_puts_records #(
   parameter int unsigned DataWidth = 128,
   localparam int unsigned BeatWidth = (DataWidth < 256) ? DataWidth : 256,
@@ -94,7 +94,7 @@ module writer_puts_records #(
     end else assume (!bvalid && !rewind && !record_valid);
   end
 
-  // ---- Results taken and answered since the last rewind
+  // ---- Numbers of results taken and acknowledged since the last rewind
 
   logic take;
   logic [31:0] taken, answered;
@@ -107,7 +107,7 @@ module writer_puts_records #(
   // ---- The watched result: its address and its beats, until both have been taken
 
   logic watching, address_taken, in_upper;
-  logic [3:0] beats;  // taken
+  logic [3:0] beats;  // number of beats taken
   logic [63:0] its_address;
   logic [255:0] its_record;
   logic [DataWidth-1:0] its_data;

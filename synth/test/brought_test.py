@@ -1,4 +1,4 @@
-"""User-supplied modules: malformed ones are refused with their line, wrong ones are refuted in words."""
+"""Tests user-supplied modules: malformed modules are refused with a line number, wrong modules are refuted in words."""
 
 import contextlib
 import io
@@ -20,7 +20,7 @@ PORTS = """(
 """
 HEAD = f"module mine #(parameter int unsigned Width = 48) {PORTS}"
 ADDS = "  assign {carry_o, sum_o} = a_i + b_i + (Width + 1)'(carry_i);\nendmodule\n"
-# A sum that forgets the carry into bit 3.
+# An adder without the carry into bit 3 of the sum.
 FORGETS = """
   logic [Width-1:0] right;
   assign {carry_o, right} = (Width + 1)'(a_i) + (Width + 1)'(b_i) + (Width + 1)'(carry_i);
@@ -75,7 +75,7 @@ class Brought(unittest.TestCase):
             self.assertRegex(told.getvalue(), f"^{said}$")
 
     def test_files_as_other_tools_write_them(self) -> None:
-        """Accepts byte order marks, encodings, line ends, time scales, default net types, names; each tool also proves the last one."""
+        """Accepts all byte order marks, encodings, line ends, time scales, default net types and names; proves the last module."""
         module = f"`timescale 1ns / 1ps\n`default_nettype none\n{HEAD.replace('logic', 'wire')}{ADDS}"
         multiplier = ("// prefix_adder, booth_multiplier\r\n`timescale 1ps/1ps\r\nmodule half_adder(input a, b, output s); timeunit 1ns; assign s = a ^ b; "
                       "endmodule : half_adder\r\nmodule times #(parameter Width = 24) (input [Width-1:0] a_i, b_i, output [2*Width-1:0] "
@@ -110,7 +110,7 @@ class Brought(unittest.TestCase):
         self.assertRegex(row["counterexample"], r"^product = a \* b at 5 bits: refuted by a = \d+ .*it says product = 0 \(0x000\); right is")
 
     def test_names_of_hardware_are_free_to_use(self) -> None:
-        """Proves a copy of the replaced module, and a multiplier of another name by every product."""
+        """Proves a copy of the replaced module, and, by every product, a multiplier of another name."""
         rows = self.judged(ADDER=self.file((catalogue.HW / "arith/prefix_adder.sv").read_text()), MULTIPLIER=self.file(
             "module times #(parameter Width = 24) (input [Width-1:0] a_i, b_i, output [2*Width-1:0] product_o);\n"
             "  assign product_o = a_i * b_i;\nendmodule\n", "times.v"))

@@ -1,4 +1,4 @@
-"""The lists of files in hw/*/*.core, as synth.cores reads them."""
+"""Tests synth.cores, which reads the lists of files hw/*/*.core."""
 
 import pathlib
 import tempfile
@@ -27,13 +27,13 @@ class Cores(unittest.TestCase):
             (self.hw / core / name).touch()
 
     def test_order(self):
-        """The cores that a core uses come first, and in a core its packages."""
+        """The cores that a core uses come first. Within a core, packages come first."""
         self.assertEqual([file.name for file in cores.files("fp", self.hw)],
                          ["adder.sv", "fp_pkg.sv", "fp_adder.sv"])
         self.assertEqual(cores.names(self.hw), ["arith", "fp"])
 
     def test_used(self):
-        """Finds the modules that a module names outside comments, and the modules that those name."""
+        """Finds the modules that a module names outside comments, directly or indirectly."""
         (self.hw / "fp" / "fp_adder.sv").write_text("module fp_adder; fp_pkg::x; // adder\n")
         among = cores.files("fp", self.hw)
         self.assertEqual([file.stem for file in cores.used("fp_adder", among)], ["fp_pkg", "fp_adder"])
@@ -41,7 +41,7 @@ class Cores(unittest.TestCase):
         self.assertEqual(cores.used("fp_adder", among), among)
 
     def test_list_and_folder_disagree(self):
-        """Reports a file too many, a file too few, and no list at all."""
+        """Reports an unlisted file, a missing file, and a missing list."""
         for change, said in [(lambda: (self.hw / "arith" / "new.sv").touch(),
                               r"arith\.core: new\.sv is unlisted, expected a line"),
                              (lambda: (self.hw / "fp" / "fp_pkg.sv").unlink(),
@@ -55,7 +55,7 @@ class Cores(unittest.TestCase):
                 (self.hw / "arith" / "new.sv").unlink()
 
     def test_plain_verilog_takes_parameters_of_any_module(self) -> None:
-        """Writes modules with an unsized constant at a cell's port, too; a run that fails leaves no file."""
+        """Also writes modules with an unsized constant at a cell's port. A failed run leaves no file."""
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "exact_unit.v"
             verilog.write(catalogue.design("exact_unit", DigitWidth=24), out)

@@ -1,4 +1,4 @@
-"""The table of modules, and the files that are made of the registers' page."""
+"""Tests the table of modules, and the files generated from registers.md."""
 
 import csv
 import unittest
@@ -23,7 +23,7 @@ module m;
                          ["What it is, I . N being a product", "Combinational; one level", "Latency 2 clocks"])
 
     def test_a_row_says_what_a_module_is(self):
-        """A row has a description in few words, latency and throughput; and its figures can be read back."""
+        """A row has a short description, latency and throughput. Its figures can be read back from the page."""
         text = datasheet.page({"adder": ["64,000", "2.27", ""]})
         self.assertIn("\n|full_adder|Full adder: one bit of sum and carry|0|||||\n", text)
         self.assertIn("|fp_adder|Floating-point add and subtract|0 or, Pipelined, 3|one operation a clock||||\n", text)
@@ -34,7 +34,7 @@ module m;
                 self.assertTrue(2 <= len(words) <= datasheet.WORDS, f"{core}/{name}: {words}")
 
     def test_claims_follow_from_the_tables(self):
-        """Figures in the text of the results' page are those of the published files."""
+        """Figures in the text of results/README.md follow from the published files."""
         rows = {(row["design"], row["target"], row["flow"]): row
                 for row in csv.DictReader((tables.RESULTS / "synth.csv").read_text().splitlines())}
         ripple, less, more, graded = (float(rows[f"adder-{name}", "osu035", "cells"]["delay_ns"])
@@ -54,7 +54,7 @@ module m;
             self.assertIn(claim, text)
 
     def test_every_folder_is_listed(self):
-        """hw/README.md names each core, with its page if it has one, and the table of modules."""
+        """hw/README.md lists each core, links to the core's README.md if there is one, and links to modules.md."""
         text = (cores.HW / "README.md").read_text()
         self.assertIn("(modules.md)", text)
         for core in cores.names():

@@ -1,4 +1,4 @@
-"""Other projects' float cores: the parts taken from their files, and the processor's results."""
+"""Tests the comparison with other projects' float cores: modules taken from their files, and reference results."""
 
 import unittest
 

@@ -1,4 +1,4 @@
-"""The paper's delay model, and the best groups under it."""
+"""Tests the paper's delay model, and the best group widths in this model."""
 
 import itertools
 import unittest
@@ -8,7 +8,7 @@ from synth.structure import COUNTINGS, Counting
 
 
 def delay(groups: tuple[int, ...], counting: Counting) -> float:
-    """Returns the delay of a carry-select adder's last sum bit, straight from its definition."""
+    """Returns the delay of a carry-select adder's last sum bit, computed from the definition of the delay model."""
     carry, slowest = None, 0.0
     for size in groups:
         ready = 0.0
@@ -38,14 +38,14 @@ class Grading(unittest.TestCase):
     """Tests best_by_model."""
 
     def test_optimum_of_10_bits(self):
-        """The dynamic programme finds the optimum of all 512 groupings."""
+        """Dynamic programming finds the optimum of all 512 groupings."""
         for counting in COUNTINGS:
             found, groups = grading.best_by_model(10, counting)
             self.assertEqual(found, min(delay(g, counting) for g in compositions(10)))
             self.assertEqual(found, delay(groups, counting))
 
     def test_paper(self):
-        """10 delays for 48 bits if the multiplexer of the sum bit is not counted, else 11."""
+        """The best delay for 48 bits is 10 if the multiplexer of the sum bit is not counted, else 11."""
         self.assertEqual(grading.best_by_model(48, COUNTINGS[1])[0], 10)
         self.assertEqual(grading.best_by_model(48, COUNTINGS[0])[0], 11)
 
@@ -62,7 +62,7 @@ def cell(kind: str, inputs: dict[str, int], outputs: dict[str, int]) -> dict:
             "directions": {**dict.fromkeys(inputs, "input"), **dict.fromkeys(outputs, "output")}}
 
 
-# Two full adders in a chain; the second one's sum through a multiplexer. Bits 2 to 5 are inputs.
+# Two chained full adders. The sum of the second adder goes through a multiplexer. Bits 2 to 5 are inputs.
 MODULE = {
     "ports": {"a_i": {"direction": "input", "bits": [2, 3]}, "sum_o": {"direction": "output", "bits": [10, 12]}},
     "cells": [
@@ -77,7 +77,7 @@ class Count(unittest.TestCase):
     """Tests structure.delay."""
 
     def test_countings(self):
-        """Each counting has its own delay of the last multiplexer."""
+        """The delay of the last multiplexer depends on the counting."""
         every, carries = COUNTINGS[:2]
         self.assertEqual(structure.delay(MODULE, every), 3)
         self.assertEqual(structure.delay(MODULE, carries), 2)

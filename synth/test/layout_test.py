@@ -1,4 +1,4 @@
-"""Layouts: the readers of LEF, DEF and magic's files, and one adder from netlist to delay with wires."""
+"""Tests layouts: the readers of LEF, DEF and magic's files, and one adder from netlist to delay with wires."""
 
 import pathlib
 import tempfile
@@ -62,7 +62,7 @@ END NETS
 
 
 class Reading(unittest.TestCase):
-    """Readers of the tools' files."""
+    """Tests the readers of the tools' files."""
 
     def test_lef(self):
         """Reads a cell's size and signal pins, without rails."""
@@ -84,7 +84,7 @@ class Reading(unittest.TestCase):
             Wire("metal2", 1.6, 8, 1.6, 8, "metal3"), Wire("metal3", 1.6, 8, 4.8, 8)]})
 
     def test_capacitances(self):
-        """Counts capacitance to ground and to neighbours; that of a cell's pin is left out."""
+        """Counts capacitance to ground and to neighbours, without the capacitance of a cell's pin."""
         text = ('scale 1000 1 5\nnode "n1" 2 1000 0 0 m2\nnode "c0/A" 2 9 0 0 m1\n'
                 'cap "n1" "n2" 500\nmerge "c0/A" "n1" -70\n')
         found = parasitics.capacitances(text, {"n1", "n2"})
@@ -92,7 +92,7 @@ class Reading(unittest.TestCase):
         self.assertAlmostEqual(found["n2"], 0.0005)
 
     def test_gaps(self):
-        """There are no gaps in full rows; else gaps have the room asked for, most beside the narrow cell of many pins."""
+        """Full rows have no gaps. Otherwise gaps take the free space, most of it beside narrow cells with many pins."""
         wide = {"c0": Cell("a", "WIDE", {"A": "p0", "Y": "n1"})}
         narrow = {f"c{place}": Cell("b", "NARROW", dict.fromkeys("ABCY", "n1")) for place in range(1, 9)}
         technology = Technology(LAYERS, {"WIDE": lef.Macro(48, 20, {}), "NARROW": lef.Macro(8, 20, {})})
@@ -104,17 +104,17 @@ class Reading(unittest.TestCase):
 
 
 class Trees(unittest.TestCase):
-    """A net's resistors."""
+    """Tests the resistors of a net."""
 
     TAPS = {"c0:Y": [Rect("metal1", 1.4, 3.8, 1.8, 4.2)], "c1:A": [Rect("metal3", 4.6, 7.8, 5, 8.2)]}
 
     def ohms(self, wires: list[Wire]) -> float:
-        """Returns the sum of a net's resistors, which are in series."""
+        """Returns the sum of a net's resistors. All resistors of the net must be in series."""
         found = parasitics.tree(wires, self.TAPS, TECHNOLOGY, {"metal1": 1.3, "metal2": 1.2})
         return sum(value for _, _, value in found.resistors if value > 0.01)
 
     def test_series(self):
-        """Adds up sheets by length over width, and contacts."""
+        """Adds sheet resistance times length over width, and contact resistances."""
         wires = route.wires(ROUTED, list(LAYERS))["n1"]
         self.assertAlmostEqual(self.ohms(wires), 1.3 + 1.2 + 0.07 * 7.2 / 0.6)
         with self.assertRaisesRegex(tools.ToolFailed, "2 pieces"):
@@ -134,7 +134,7 @@ class Estimate(unittest.TestCase):
         self.assertEqual(estimate.tree([(0, 0), (10, 0), (12, 1), (0, 3)]), [(0, 3), (0, 1), (1, 2)])
 
     def test_wires(self):
-        """Wires lead from pin to pin, upwards in metal 2 and across in metal 3, in one piece; a net of one pin has none."""
+        """Wires connect all pins, vertically in metal 2 and horizontally in metal 3. A net with one pin has no wires."""
         technology = Technology(LAYERS, {"INVX1": lef.Macro(4.8, 20, {
             "A": [Rect("metal1", 0.4, 6, 1.2, 8)], "Y": [Rect("metal1", 2, 6, 2.8, 8)]})})
         nets = Netlist("top", {"c0": Cell("a", "INVX1", {"A": "p0", "Y": "n1"}),
@@ -173,13 +173,13 @@ class Parts(unittest.TestCase):
 
 
 class Report(unittest.TestCase):
-    """The tables of make layout."""
+    """Tests the tables of make layout."""
 
     RECORD = {"job": flow.Job(catalogue.Design("d", "d", "arith"), catalogue.library("osu035"), "fast"), "cells": 2, "area": 100, "core": 200, "wire_um": 1500, "wire_pf": 0.1,
               "cells_ns": 2.0, "guess_ns": 2.8}
 
     def test_table(self):
-        """Shows the median with its spread and the ratio; or the nets that failed, and then no delay."""
+        """Shows the median, the spread and the ratio of delays, or, if nets failed, their number and no delay."""
         routed = {**self.RECORD, "wires_ns": 3.0, "spread": [2.9, 3.0, 3.2], "failed": [0, 0, 0]}
         failed = {**self.RECORD, "spread": [], "failed": [7]}
         placed = {**failed, "failed": [None]}
@@ -192,10 +192,10 @@ class Report(unittest.TestCase):
 @unittest.skipUnless(yosys.installed() and all(map(tools.installed, ("coloquinte", "qrouter", "magic", "sta"))),
                      ".ci/setup layout installs the tools")
 class Adder(unittest.TestCase):
-    """An 8-bit ripple adder, from RTL to its delay with wires."""
+    """Tests an 8-bit ripple adder, from RTL to its delay with wires."""
 
     def test_laid_out(self):
-        """All nets are routed; wires add to the delay of the cells, but little in so small an adder."""
+        """All nets are routed. Wires increase the delay, but only a little, because the adder is small."""
         design = catalogue.design("adder", adder="ripple", Width=8)
         with (tempfile.TemporaryDirectory() as name,
               mock.patch.object(store, "OUT", pathlib.Path(name))):
@@ -213,10 +213,10 @@ class Adder(unittest.TestCase):
 
 @unittest.skipUnless(yosys.installed() and all(map(tools.installed, ("coloquinte", "sta"))), ".ci/setup layout installs the tools")
 class Placement(unittest.TestCase):
-    """Coloquinte's placement of a 16-bit adder."""
+    """Tests the placement of a 16-bit adder by Coloquinte."""
 
     def test_placed(self):
-        """No cells overlap in the rows, ports lie around them, the density is the one asked for."""
+        """Cells do not overlap within rows, ports lie around the core, and the density is the requested one."""
         library = catalogue.library("osu035")
         design = catalogue.design("adder", adder="prefix", Width=16)
         with (tempfile.TemporaryDirectory() as name,

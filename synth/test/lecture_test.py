@@ -1,4 +1,4 @@
-"""Values of netlists against Python's own arithmetic, and the page that shows them."""
+"""Tests values of netlists against Python's arithmetic, and the page that shows these values."""
 
 import argparse
 import html.parser
@@ -19,7 +19,7 @@ def given(**changed: object) -> argparse.Namespace:
 
 class Values(unittest.TestCase):
     def test_adders_add(self) -> None:
-        """Each kind adds, as elaborated and without constants; removing them saves gates only in kinds that have some."""
+        """Each kind adds, with and without constants. Removing constants saves gates only in kinds that have constants."""
         numbers = random.Random(1)
         for kind, look_ahead in (("ripple", None), ("uniform", False), ("graded", True), ("graded", False), ("prefix", None)):
             whole = structure.netlist(catalogue.design("adder", adder=kind, look_ahead=look_ahead, Width=9))
@@ -58,7 +58,7 @@ class Page(unittest.TestCase):
         self.assertIn("near_difference", lecture.page(given(x=1.0, y=-0.99)))
 
     def test_booth_rows_add_up(self) -> None:
-        """Checks the displayed rows, and the two that the last adder takes."""
+        """Checks the displayed rows, and the two rows that the last adder takes."""
         numbers = random.Random(3)
         for a, b in [(181, 90), (0, 7), *((numbers.getrandbits(8), numbers.getrandbits(8)) for _ in range(5))]:
             page = re.sub(r"</?(?:b|code)>|\u2009", "", lecture.booth_section(given(a=a, b=b)))

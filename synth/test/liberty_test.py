@@ -1,4 +1,4 @@
-"""Liberty files: the parser, and a user's library in the flows."""
+"""Tests the parser of Liberty files, and a user's library in the flows."""
 
 import contextlib
 import io
@@ -10,13 +10,13 @@ from unittest import mock
 from synth import __main__ as program
 from synth import catalogue, liberty, mapping, store
 
-# A library in femtofarads and picoseconds: only the cells that ABC and a register need.
+# A library in femtofarads and picoseconds, with only the cells that ABC needs, and a register.
 TABLE = 'values ("10, 100", "20, 110");'
 SLEWS = 'index_1 ("10, 100"); index_2 ("1, 100");'
 
 
 def cell(name: str, area: float, farads: float, function: str, inputs: str) -> str:
-    """Returns a gate all of whose arcs have the same table."""
+    """Returns a gate with the same timing table for all arcs."""
     arcs = "".join(f"timing () {{ related_pin : {pin}; timing_sense : {'negative' if function[0] in '!(' else 'positive'}_unate; " + "".join(
         f"{kind} (t) {{ {SLEWS} {TABLE} }} " for kind in ("cell_rise", "cell_fall", "rise_transition", "fall_transition")) + "}\n"
         for pin in inputs)
@@ -59,7 +59,7 @@ class OfUser(unittest.TestCase):
     """Tests LIBERTY=FILE."""
 
     def measured(self, text: str, flow: str) -> tuple[catalogue.Library, dict]:
-        """Returns the library in `text`, and a ripple adder of 4 bits that is mapped to it."""
+        """Returns the library in `text`, and the result for a 4-bit ripple adder mapped to this library."""
         with tempfile.TemporaryDirectory() as name, mock.patch.object(store, "OUT", pathlib.Path(name)):
             file = pathlib.Path(name) / "my cells.lib"
             file.write_text(text)
@@ -76,7 +76,7 @@ class OfUser(unittest.TestCase):
         self.assertTrue(0.01 * steps < got["delay_ns"] < 0.11 * (steps + 1))  # a gate takes 10 to 110 ps
 
     def test_osu_under_another_name(self):
-        """The same cells give the same area, and nearly the same time: the load is 0.107 pF, not 0.1."""
+        """The same cells have the same area and nearly the same delay. Delays differ because the load is 0.107 pF instead of 0.1."""
         osu = catalogue.library("osu035")
         text = osu._file("lib").read_text()
         for flow in ("cells", "fast", "area"):
@@ -88,7 +88,7 @@ class OfUser(unittest.TestCase):
                 self.assertAlmostEqual(got["delay_ns"] / same["delay_ns"], 1, delta=0.02)
 
     def test_the_command_line(self):
-        """Measures one design; the report's rows have only the flows for which the library has the cells."""
+        """Measures one design. The report's rows have only flows for which the library has the cells."""
         said, libraries = io.StringIO(), list(catalogue.LIBRARIES)
         with (tempfile.TemporaryDirectory() as name, mock.patch.object(store, "OUT", pathlib.Path(name)),
               mock.patch.object(catalogue, "LIBRARIES", libraries), contextlib.redirect_stdout(said)):

@@ -1,4 +1,4 @@
-"""Parsers of command lines and of the tools' reports."""
+"""Tests the parsers of command lines and of the tools' reports."""
 
 import argparse
 import contextlib
@@ -32,7 +32,7 @@ class Options(unittest.TestCase):
     """Tests chosen.whole and chosen.whole_numbers."""
 
     def test_whole(self):
-        """Options are checked before anything runs."""
+        """Right values are parsed, wrong values are refused."""
         for check, right, wrong in ((chosen.whole(1, 9), {"1": 1, "9": 9}, ("", "0", "10", "nan", "2.5", "x", "-1")),
                                     (chosen.whole_numbers, {"4": [4], "4,5,7": [4, 5, 7]}, ("", "abc", "4,,5", "0", "1,-1", "256"))):
             for text, value in right.items():
@@ -43,10 +43,10 @@ class Options(unittest.TestCase):
 
 
 class Parsing(unittest.TestCase):
-    """Tests mapping's readers."""
+    """Tests the parsers of synth.mapping."""
 
     def test_critical_path(self):
-        """Arrival and set-up time add up; steps are pins with their cells."""
+        """The delay is arrival plus set-up time. Steps have pins and cells."""
         delay, steps = mapping.critical_path(OPENSTA)
         self.assertEqual(delay, 0.22)
         self.assertEqual([step["pin"] for step in steps],
@@ -54,7 +54,7 @@ class Parsing(unittest.TestCase):
         self.assertEqual(steps[2]["delay"], 0.12)
 
     def test_registers(self):
-        """A path's end is the signal in its register, or its port."""
+        """An end of a path is the signal of a register, or a port."""
         netlist = "DFFPOSX1 _2_ (\n .CLK(clk_i),\n .D(n1),\n .Q(\\u_core.sum_q[3] )\n);\n"
         self.assertEqual(mapping.registers(netlist, [{"pin": "bus_i[0]"}, {"pin": "_2_/D"}]),
                          {"from": "bus_i[0]", "to": "u_core.sum_q[3]"})
@@ -65,7 +65,7 @@ class Parsing(unittest.TestCase):
             mapping.critical_path("Error: netlist.v, line 3 syntax error\nNo paths found.\n")
 
 
-# As Yosys states it: a module's area includes its submodules.
+# Yosys's form: the area of a module includes its submodules.
 STAT = {
     "line_cache$ray_core.u_memory.u_cache": {"area": 100.0, "num_cells_by_type": {"DFFPOSX1": 10}},
     "memory_subsystem$ray_core.u_memory": {

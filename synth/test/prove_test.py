@@ -1,5 +1,5 @@
-"""Proofs refuse faults: a wrong wire in an array's lane, a counter that misses events, two results' places exchanged, a hit that is
-forgotten."""
+"""Tests that proofs refute faulty modules. Examples of faults: a wrong wire in an array's lane, a counter that misses events, two exchanged
+results, a lost hit."""
 
 import pathlib
 import tempfile
@@ -8,7 +8,7 @@ import unittest.mock
 
 from synth import catalogue, cores, prove, store, tools, unit_proofs
 
-# Faults of modules, by the proof that refuses them: a text of the module and its replacement.
+# Faults by the proof that refutes them: the faulty module, and pairs of source text and its replacement.
 FAULTS = {
     "array": ("hit_test_array", [
         (".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])"),
@@ -25,7 +25,7 @@ FAULTS = {
         ("(old_low_q <= high_q)", "(old_low_q < high_q)"),
         ("old_open ? old_triangle_q : triangle_q", "open ? triangle_q : old_triangle_q"),
         ("forward ? low_q : nearest_low", "is_over_q ? low_q : nearest_low"),
-        ("(high_q < {1'b0, old_t_max_q})", "(high_q <= {1'b0, old_t_max_q})"),  # of two hits at one place the later is kept
+        ("(high_q < {1'b0, old_t_max_q})", "(high_q <= {1'b0, old_t_max_q})"),  # of two equally near hits, keeps the later hit
         ("if (test_q && !same) counts", "if (test_q) counts"),
         ("here_q < CountWidth'(Queue)", "here_q <= CountWidth'(Queue)"),
     ]),
@@ -115,7 +115,7 @@ class Netlists(unittest.TestCase):
     """Tests which netlists are compared with their RTL."""
 
     def test_none_that_can_only_fail(self):
-        """Netlists without registers are compared by ABC, units by simulation, netlists whose memories are ports not at all."""
+        """ABC compares netlists without registers, simulation compares units. Netlists with memories as ports are not compared."""
         names = {proof.name: proof.how for proof in prove.all_proofs() if proof.name.startswith("netlist.")}
         self.assertEqual([name for name in names if name.endswith(".blocks")], [])
         clocked = {f"netlist.{row.design.name}." for row in catalogue.report_rows() if row.design.clock}

@@ -1,4 +1,4 @@
-"""Tables of the report, and the measurements for them."""
+"""Tests the tables of the report, and the measurements for these tables."""
 
 import contextlib
 import io
@@ -77,10 +77,10 @@ class Tables(unittest.TestCase):
     """Tests the two forms of tables."""
 
     def test_markdown(self):
-        """Columns line up, numbers to the right."""
+        """Columns are aligned; numbers are right-aligned."""
         self.assertEqual(tables.markdown(["what", "ns"], [["a", "9.5"], ["b", "10.5"]]),
                          "| what |   ns |\n|------|-----:|\n| a    |  9.5 |\n| b    | 10.5 |\n")
 
     def test_comma_separated(self):
-        """Missing values are left empty; columns that are not asked for are left out."""
+        """Missing values are empty. Columns that are not requested are left out."""
         self.assertEqual(tables.comma_separated([{"a": 1, "c": 2}], ["a", "b"]), "a,b\n1,\n")

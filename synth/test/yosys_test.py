@@ -1,4 +1,4 @@
-"""Tests Yosys as this package runs it."""
+"""Tests synth.yosys, and flows that run Yosys."""
 
 import collections
 import contextlib
@@ -50,7 +50,7 @@ class Yosys(unittest.TestCase):
             yosys.run(yosys.read([self.source], "top"), self.log)
 
     def test_a_crash_is_an_error(self):
-        """If the process that runs Yosys ends by a signal, this program gets an exception."""
+        """If a signal ends the process that runs Yosys, ToolFailed is raised."""
         with self.assertRaisesRegex(tools.ToolFailed, "^yosys failed"):
             yosys.run("exec -- kill -SEGV $PPID", self.log)
 
@@ -72,7 +72,7 @@ class Yosys(unittest.TestCase):
         self.assertEqual(said.getvalue(), "synth.yosys: Yosys is not installed: pip install -r synth/requirements.txt\n")
 
     def test_comparisons_take_no_equality(self):
-        """A comparison takes as many gates with its operands swapped."""
+        """A comparison needs the same number of gates when its operands are swapped."""
         counts = []
         for operator in ("<", ">", ">=", "<="):
             self.source.write_text(f"module top(input logic [7:0] a_i, b_i, output logic y_o); assign y_o = a_i {operator} b_i; endmodule\n")
@@ -86,7 +86,7 @@ class Memories(unittest.TestCase):
     """Tests flow `blocks`."""
 
     def check(self, design: catalogue.Design, depth: int, width: int, address: int, enables: int) -> None:
-        """Checks that a memory's ports become the design's: each bit of data and address, and an enable for each part of a word."""
+        """Checks that a memory's ports become the design's ports: every bit of data and address, and one enable per part of a word."""
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             found, _ = mapping.synthesise(design, catalogue.library("osu035"), "blocks", root)
@@ -98,9 +98,9 @@ class Memories(unittest.TestCase):
                          [width, width, address, enables])
 
     def test_every_bit_of_a_kept_memory_is_timed(self):
-        """Checks a queue around a ram."""
+        """Checks a queue that contains a ram."""
         self.check(catalogue.design("fifo", Width=48, Depth=64, Memory=1), 64, 48, 6, 1)
 
     def test_parts_of_a_word_have_an_enable_each(self):
-        """Checks a ram like that of the tags of a cache's ways."""
+        """Checks a ram with several parts per word, as used for the tags of a cache's ways."""
         self.check(catalogue.design("ram", Width=48, Depth=64, Parts=4), 64, 48, 6, 4)

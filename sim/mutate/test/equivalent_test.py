@@ -1,4 +1,4 @@
-"""Tests sim.mutate: it tells faults that change nothing from those that do, also behind registers."""
+"""Tests that sim.mutate distinguishes faults that change outputs from faults that do not, also behind registers."""
 
 import pathlib
 import re
@@ -8,7 +8,7 @@ import unittest
 from sim.mutate.__main__ import equivalent, place
 from synth import yosys
 
-# Two registers in a row, a part whose tie is held at 0, and a named wire that no output depends on.
+# Two registers in series, a black box with an input tied to 0, and a named wire that no output depends on.
 SOURCE = """
 (* blackbox *) module part(input tie_i, input a_i, output y_o); endmodule
 module top(input clk_i, input [1:0] a_i, b_i, output reg [1:0] y_o, output z_o, w_o);

@@ -1,4 +1,4 @@
-"""The page of `make page` in Chromium, against build/sim/worked_example, which shares no code with it but the RTL.
+"""Tests the page of `make page` in Chromium: compares it with build/sim/worked_example, which shares only the RTL with the page.
 
 usage: python3 -m unittest sim/page/test/page_test.py, after `make page`"""
 
@@ -51,7 +51,7 @@ class Page(unittest.TestCase):
         for row, expected in zip(self.rows(), edges):
             edge, *rest = expected
             name = rest.pop(0) if int(edge) <= 7 else ""
-            # The program prints I-1, I-2, I-3, then the page's other columns. After edge 7 noise of its bus enters N, I-3, I-2.
+            # The program prints I-1, I-2, I-3, then the page's other columns. After edge 7, noise on the program's bus enters N, I-3, I-2.
             first, second, third, normal, *others = rest[:7]
             is_noisy = int(edge) > 7
             expected = [first, *others] if is_noisy else [third, second, first, normal, *others]
@@ -75,7 +75,7 @@ class Page(unittest.TestCase):
         self.click("aim")
         z = struct.unpack(">f", bytes.fromhex(self.rows()[9][9]))[0]
         x, y = (struct.unpack(">f", bytes.fromhex(self.rows()[k][9]))[0] for k in (7, 8))
-        # On the plane through (-1, -1, 0), (2, -1, 0.5), (0, 2, 0), seen from (0, 0, 5), along (0.1, 0.2, -1).
+        # The point is on the plane through (-1, -1, 0), (2, -1, 0.5), (0, 2, 0), and on the ray from (0, 0, 5) along (0.1, 0.2, -1).
         self.assertAlmostEqual(x / z, -0.1, 6)
         self.assertAlmostEqual(y / z, -0.2, 6)
         self.assertAlmostEqual(-1.5 * (x + 1) + 0.5 * (y + 1) + 9 * (z + 5), 0, 4)

@@ -1,5 +1,5 @@
-// Every kind of adder and leading-zero counters at 10 widths from 1 to 64 against the CPU's
-// integers.
+// Compares every kind of adder, and leading-zero counters, at 10 widths from 1 to 64, with the
+// CPU's integers.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -39,7 +39,7 @@ class AddersTest : public testing::Test {
   Model<Vadders_top> model_;
 };
 
-// The check itself: a sum that is wrong in its lowest bit is wrong in every adder.
+// Tests the check itself: with an expected sum that is off by one, every adder counts as wrong.
 TEST_F(AddersTest, WrongSumIsSeenInEveryAdder) {
   add(0, 0, false);
   ASSERT_EQ(model_->wrong_width_o, 0u);
@@ -48,7 +48,7 @@ TEST_F(AddersTest, WrongSumIsSeenInEveryAdder) {
   EXPECT_EQ(model_->wrong_kind_o, kAllKinds);
 }
 
-// Exhaustive in the lowest eight bits; those above are random, for wider adders.
+// Exhaustive in the lowest eight bits. The upper bits, for wider adders, are random.
 TEST_F(AddersTest, ExhaustiveUpToEightBits) {
   std::mt19937_64 random(1);
   for (std::uint64_t low = 0; low < 1 << 17; ++low) {
@@ -58,7 +58,7 @@ TEST_F(AddersTest, ExhaustiveUpToEightBits) {
   }
 }
 
-// A carry from every bit to every higher one, propagated through ones in either operand.
+// A carry from every bit to every higher bit, propagated through ones in either operand.
 TEST_F(AddersTest, CarryChains) {
   std::mt19937_64 random(2);
   for (int first = 0; first < 64; ++first) {

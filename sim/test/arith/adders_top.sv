@@ -1,8 +1,8 @@
-// All kinds of adder at many widths on the same operands, checked against one 65-bit sum from the test; leading-zero
-// counters, checked against shifts.
+// All kinds of adder at many widths with the same operands, compared with one 65-bit sum from the test. Leading-zero
+// counters, compared with shifts.
 //
-// The low bits of a sum do not depend on the width, and the carry out of W bits is
-// a[W] ^ b[W] ^ sum[W]: expected_i = a_i + b_i + carry_i serves every width.
+// One expected sum, expected_i = a_i + b_i + carry_i, is enough for all widths: the low bits of a sum do not depend on
+// the width, and the carry out of W bits is a[W] ^ b[W] ^ sum[W].
 module adders_top (
   input  logic        clk_i,
   input  logic [63:0] a_i,
@@ -20,7 +20,7 @@ module adders_top (
   };
   localparam int unsigned NumKinds = 9;
 
-  // Groups that no kind has: growing, shrinking, of single bits.
+  // Group widths that no kind of adder uses by default: growing, shrinking, single bits.
   function automatic bit [8*arith_pkg::MaxGroups-1:0] odd_groups(int unsigned width);
     int unsigned left, size;
     left = width;
@@ -50,8 +50,8 @@ module adders_top (
     localparam int unsigned Width = 32'(Widths[8*w+:8]);
     logic [NumKinds-1:0] wrong, wrong_so_far;
 
-    // The five kinds of arithmetic; graded groups even where one group is the default; uniform ripple groups; odd
-    // groups with look-ahead and with ripple.
+    // k = 0 to 4: the kinds of arithmetic. 5: graded groups, even where one group is the default. 6: uniform ripple
+    // groups. 7 and 8: odd_groups with look-ahead and with ripple.
     for (genvar k = 0; k < NumKinds; k++) begin : gen_kind
       localparam int unsigned Arith = (k < 5) ? k : (k == 6) ? arith_pkg::Uniform : arith_pkg::Graded;
       localparam bit LookAhead = (k < 6) || (k == 7);

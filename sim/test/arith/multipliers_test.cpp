@@ -1,4 +1,4 @@
-// Booth multipliers of widths from 2 to 32 against the CPU's integers.
+// Compares Booth multipliers of widths from 2 to 32 with the CPU's integers.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr std::array kWidths = {2, 3, 4, 5, 6, 7, 8, 9, 11, 16, 23, 32};  // of multipliers_top.sv
+constexpr std::array kWidths = {2, 3, 4, 5, 6, 7, 8, 9, 11, 16, 23, 32};  // as in the top
 
 class MultipliersTest : public testing::Test {
  protected:
@@ -46,7 +46,7 @@ class MultipliersTest : public testing::Test {
   Model<Vmultipliers_top> model_;
 };
 
-// Exhaustive in the lowest eight bits; those above are random, for wider multipliers.
+// Exhaustive in the lowest eight bits. The upper bits, for wider multipliers, are random.
 TEST_F(MultipliersTest, ExhaustiveUpToEightBits) {
   std::mt19937 random(1);
   for (std::uint32_t low = 0; low < 1 << 16; ++low) {
@@ -56,7 +56,7 @@ TEST_F(MultipliersTest, ExhaustiveUpToEightBits) {
   }
 }
 
-// Every Booth digit in every position, alone and among others; single bits, runs, neighbours.
+// Every Booth digit in every position, alone and among others; single bits, runs, and neighbours.
 TEST_F(MultipliersTest, Structured) {
   std::vector<std::uint32_t> words = {0,          ~0u,        0x55555555, 0xaaaaaaaa,
                                       0x33333333, 0xcccccccc, 0x92492492, 0x6db6db6d};

@@ -1,5 +1,5 @@
-// Booth multipliers of many widths on the same operands: trees with the constants in the partial products or in a row
-// of their own, `*`, and a 24-bit tree with each kind of adder.
+// Multipliers of many widths with the same operands: Booth multipliers with the constants in the partial products or in
+// a separate row, `*`, and a 24-bit Booth multiplier with each kind of adder.
 module multipliers_top (
   input  logic               clk_i,
   input  logic [31:0]        a_i,

@@ -24,12 +24,12 @@
 
 namespace {
 
-std::atomic<bool> is_broken{false};  // a break was sent, but not yet received
+std::atomic<bool> is_broken{false};  // a break was sent and not yet received
 
 }  // namespace
 
-/// Replaces the C library's function: pseudoterminals carry no breaks, so this one has BoardAtAPort
-/// receive them.
+/// Replaces the C library's function. Pseudoterminals carry no breaks; this function passes a break
+/// to BoardAtAPort.
 extern "C" int tcsendbreak(int /*file*/, int /*duration*/) {
   is_broken = true;
   while (is_broken) std::this_thread::yield();
@@ -69,7 +69,7 @@ TEST(BoardCore, HitsAreTheCpuIntersectors) {
   EXPECT_GT(unit.counters().clocks, 11 * unit.counters().tests);
 }
 
-/// Different scenes, one after the other: a board keeps no line of an earlier one.
+/// Different scenes, one after the other: a board keeps no line of an earlier scene.
 TEST(BoardCore, ScenesFollowEachOther) {
   const Bvh one{test::scene_of(bodies())};
   const Bvh other{test::scene_of(test::box(glm::vec3(-0.7f), glm::vec3(0.6f)))};
@@ -105,8 +105,8 @@ TEST(BoardCore, ScenesFollowEachOther) {
   }
 }
 
-/// A board whose words arrive all at once, after the last one: as from a serial port to a busy
-/// host, which then must not wait for another word.
+/// A board whose words are received only after its last word, all at once, as by a busy host from a
+/// serial port. The host must then not wait for another word.
 class BurstLink : public WordLink {
  public:
   bool send(std::uint32_t word) override {
@@ -159,7 +159,7 @@ TEST(BoardCore, AHostThatHasAllResultsSendsTheNextRays) {
   check.nearest(rays, {}, hits);
 }
 
-/// A simulated board behind a pseudoterminal, as behind a serial port: its bytes are those that
+/// A simulated board behind a pseudoterminal instead of a serial port. The bytes are those that
 /// uart_receiver takes and uart_transmitter sends.
 class BoardAtAPort {
  public:
@@ -193,7 +193,7 @@ class BoardAtAPort {
         link->restart();
         is_broken = false;
       }
-      // Takes the bytes that have come, up to a word.
+      // Takes the bytes that have arrived, up to a word.
       while (in.size() < 4 && read(master_, &byte, 1) == 1) in.push_back(byte);
       if (in.size() >= 4 && link->send(in[0] | in[1] << 8 | in[2] << 16 | unsigned{in[3]} << 24)) {
         in.erase(in.begin(), in.begin() + 4);
@@ -220,8 +220,8 @@ class BoardAtAPort {
   std::thread board_;
 };
 
-/// Leaves as a host that stops in mid-message, between words and within one, with rays in the core;
-/// the next host must not notice.
+/// Behaves like a host that stops within a message, both between words and within a word, with rays
+/// in the core. The next host must not be affected.
 void leave_a_mess(const std::string& port, std::span<const Ray> rays) {
   const std::unique_ptr<WordLink> link = open_serial_link(port);
   const auto send = [&](const Ray& ray, std::size_t words) {

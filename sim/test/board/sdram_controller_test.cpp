@@ -1,4 +1,4 @@
-// Lines come out of the SDRAM as they went in, by commands that its data sheet allows
+// Lines read from the SDRAM equal the lines written, and all commands obey the data sheet
 // (sdram_model.h).
 #include <gtest/gtest.h>
 
@@ -98,7 +98,7 @@ TEST_F(SdramControllerTest, LinesComeAsTheyWent) {
   EXPECT_GT(written, 500);
 }
 
-/// The header's latency and period, without refreshes in between.
+/// Latency and period of a line, without refreshes, are those in the controller's header.
 TEST_F(SdramControllerTest, ALineTakesItsTime) {
   for (int i = 0; i < kStart; ++i) clock();
   int latency = 1'000, period = 1'000;

@@ -1,4 +1,4 @@
-// Words pass an 8N1 serial line unchanged, at its rate.
+// Words pass an 8N1 serial line unchanged, at the line's bit rate.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr int kClocksPerBit = 5;  // of the model
+constexpr int kClocksPerBit = 5;  // as in uart_pair.sv
 
 class UartTest : public testing::Test {
  protected:
@@ -75,7 +75,7 @@ TEST_F(UartTest, BitsAreTheStandards) {
   EXPECT_EQ(got, expected);
 }
 
-/// A line held low gives no word and one break; the next words are complete.
+/// A line held low causes one break and no word. The next words are complete.
 TEST_F(UartTest, ABreakStartsAWordAnew) {
   send(0x12345678);
   wait(15 * kClocksPerBit);  // in the word's second byte

@@ -1,5 +1,5 @@
-// The checks of sim/checks stop a simulation, and registers start with random contents. `make
-// prove` proves the FIFOs and the arbiter; every core uses memories and delay lines.
+// Tests that the checks of sim/checks stop a simulation, and that registers start with random
+// contents. `make prove` proves FIFOs and arbiter; tests of cores cover memories and delay lines.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -19,7 +19,7 @@ class CommonDeathTest : public testing::Test {
     model_.reset();
   }
 
-  /// Runs clocks with these pushes and pops. Verilator's report on stdout goes to stderr.
+  /// Runs `clocks` clocks with constant push and pop. Redirects Verilator's report to stderr.
   void run(bool push, bool pop, int clocks) {
     dup2(STDERR_FILENO, STDOUT_FILENO);
     model_->push_i = push;
@@ -38,7 +38,7 @@ TEST_F(CommonDeathTest, PopOfAnEmptyFifoStopsTheSimulation) {
   EXPECT_DEATH(run(false, true, 1), "a_no_underflow");
 }
 
-// Registers start as RAYGATE_RANDOM_RESET promises; without it, as zeros.
+// Registers start with random bits from seed RAYGATE_RANDOM_RESET, or with zeros if that is unset.
 TEST(RandomResetTest, RegistersWithoutResetStartAsTheSeedSays) {
   const auto contents = [](const char* seed) {
     if (seed != nullptr) {

@@ -1,4 +1,4 @@
-// A FIFO of two words and a delay line, for the checks of sim/checks and random register contents.
+// A FIFO of two words and a delay line, to test the checks of sim/checks and random register contents.
 module common_top (
   input  logic        clk_i,
   input  logic        rst_ni,

@@ -1,4 +1,4 @@
-// The exact unit against its reference model (answers and clocks), and both against exact numbers.
+// Compares the exact unit with its reference model (answers, clocks) and with exact numbers.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace {
 
 using lab::ExactCase;
 
-/// Returns the cases of each suite and model; RAYGATE_STRESS sets the total of a model's suites.
+/// Returns the number of cases per suite and model: 300, or RAYGATE_STRESS / number of suites + 1.
 std::size_t cases_of_a_suite() {
   const char* wanted = std::getenv("RAYGATE_STRESS");
   return wanted == nullptr ? 300 : std::strtoul(wanted, nullptr, 10) / lab::all_suites().size() + 1;
@@ -50,7 +50,7 @@ struct Narrow {
   static constexpr int kWidth = 24;
 };
 
-/// Returns the most clocks that hw/exact/README.md states for a request, with 48-bit digits.
+/// Returns the maximum latency that hw/exact/README.md states for a request, with 48-bit digits.
 int most_clocks(const ExactRequest& request) {
   if (request.asks_hit) return request.against == ExactRequest::Against::kNothing ? 1602 : 3686;
   return request.against == ExactRequest::Against::kLimit ? 1080 : 2093;

@@ -12,10 +12,10 @@ namespace {
 
 using Wide = __int128;
 
-// Clocks from the request to the first step, and from a step to the clock that sees its sum.
+// Clocks from the request to the first step, and from a step to the clock with the step's sum.
 constexpr int kFirstStep = 5, kSeen = 4;
 
-/// A binary32 number as significand 2^(exponent - 150).
+/// A binary32 number, significand * 2^(exponent - 150).
 struct Fields {
   bool negative;
   int exponent;
@@ -30,7 +30,7 @@ struct Fields {
   }
 };
 
-/// The smallest and the largest exponent of non-zero numbers.
+/// The smallest and the largest biased exponent of nonzero numbers.
 struct Range {
   int low = 255, high = 0;
 
@@ -47,7 +47,7 @@ struct Range {
 using Number = std::vector<std::int64_t>;
 using Vector = std::array<Number, 3>;
 
-/// The product x y, or its negative.
+/// The product x y, or -x y if `negate`.
 struct Term {
   const Number& x;
   const Number& y;
@@ -146,7 +146,7 @@ class Machine {
     return found;
   }
 
-  /// Extracts the lowest digit of a column's sum.
+  /// Removes the lowest digit, balanced, from a sum, and returns the digit.
   std::int64_t take_digit(Wide& sum) const {
     const Wide half = Wide{1} << (width_ - 1);
     const Wide digit = ((sum + half) & (2 * half - 1)) - half;
@@ -154,7 +154,7 @@ class Machine {
     return static_cast<std::int64_t>(digit);
   }
 
-  /// Returns digit k of significand 2^shift.
+  /// Returns digit k of significand * 2^shift.
   [[nodiscard]] Wide slice(std::uint32_t significand, int shift, int k) const {
     const int by = shift - width_ * k;
     if (by >= width_ || by <= -24) return 0;
@@ -191,8 +191,8 @@ class Machine {
     }
     return vector;
   }
-  /// Loads the limit for comparison with t = D / S in units of 2^(unit - direction's unit):
-  /// compares D `one` with S `limit`, both in the smaller unit. (`one` has one bit, `limit` 24.)
+  /// Loads `limit` and `one` in a common unit, for comparing t = D / S with the limit: D * one is
+  /// compared with S * limit. t has the unit 2^(unit_ - direction_unit_).
   void load_limit(Number& limit, Number& one) {
     const Fields fields(request_.limit);
     const int gap = unit_ - (fields.exponent + direction_unit_ - 150);
@@ -248,14 +248,14 @@ class Machine {
     return {component(1, 2), component(2, 0), component(0, 1)};
   }
 
-  /// Returns the sign of the columns' sum, from the top down, once lower columns cannot change it.
+  /// Returns the sign of the sum of terms. Adds columns from the highest until the sign is known.
   int sign(std::initializer_list<Term> terms) {
     const auto top = static_cast<int>(terms.begin()->x.size() + terms.begin()->y.size()) - 2;
     const Wide sure = Wide{1} << sure_bit_;
     Wide sum = 0;
     bool known = false;
     for (int k = top; k >= 0; --k) {
-      // The sign is known, and the next instruction follows.
+      // The sign has become known, and the next instruction follows.
       if (known && clock_ > answer_ - 1) break;
       const Wide more = column(terms, k);
       if (known) continue;
@@ -263,7 +263,7 @@ class Machine {
       known = k == 0 || sum >= sure || sum < -sure;
       if (known) answer_ = clock_ - 1 + kSeen + 1;
     }
-    // Steps already in flight at that time still take their clocks.
+    // Steps issued before the sign became known still take their clocks.
     clock_ = std::min(clock_, answer_);
     return (sum > 0) - (sum < 0);
   }

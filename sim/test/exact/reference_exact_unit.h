@@ -1,12 +1,12 @@
-// Reference model of hw/exact in C++, with its latency.
+// Reference model of hw/exact in C++, including latency.
 #pragma once
 
 #include "host/exact/exact.h"
 
 namespace raygate {
 
-/// A request to the exact unit: whether a ray hits `triangle`, how that hit's t compares, or both.
-/// Values have the ranges of exact.h.
+/// A request to the exact unit: does a ray hit `triangle`, how does the hit's t compare, or both.
+/// Values have the ranges stated in exact.h.
 struct ExactRequest {
   enum class Against { kNothing, kLimit, kOther };  ///< as in exact_pkg::against_e
 

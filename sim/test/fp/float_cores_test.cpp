@@ -1,4 +1,4 @@
-// Every operation of the float cores in every format, in all modes, against the oracle. `make
+// Compares every operation of the float cores, in every format and mode, with the oracle. `make
 // prove` proves the structural cores for all operands.
 #include "sim/fp/float_cores.h"
 
@@ -37,7 +37,7 @@ class FloatCoresTest : public testing::TestWithParam<std::tuple<FloatFormat, Flo
   std::unique_ptr<FloatCores> cores_ = rtl_float_cores(std::get<0>(GetParam()));
 };
 
-/// All pairs of the 8-bit format, crossed edges and 200,000 pairs of the others.
+/// All pairs of the 8-bit format; crossed edges and 200,000 random pairs of the other formats.
 TEST_P(FloatCoresTest, EqualTheOracle) {
   const auto [format, op] = GetParam();
   if (format == kFloat8) {

@@ -9,7 +9,7 @@
 namespace raygate {
 namespace {
 
-// Every finite number of a format of 32 bits or less is a double.
+// Returns the number as a double, exactly: a double can represent every format of up to 32 bits.
 double to_double(FloatFormat format, std::uint32_t bits) {
   const int field = static_cast<int>(bits >> format.frac_bits) & format.max_field();
   const std::uint32_t fraction = bits & format.frac_mask();
@@ -20,7 +20,7 @@ double to_double(FloatFormat format, std::uint32_t bits) {
   return sign * std::ldexp(significand, exponent);
 }
 
-// Precision in MPFR: more than two significands of binary32, and still a machine word.
+// MPFR's precision in bits: more than two significands of binary32, and within a machine word.
 constexpr mpfr_prec_t kPrecision = 62;
 
 struct Scratch {
@@ -59,7 +59,7 @@ ExactValue exact_result(FloatFormat format, FloatOp op, std::uint32_t a, std::ui
       ternary = mpfr_div(mp.result, mp.a, mp.b, MPFR_RNDZ);
       break;
   }
-  if (mpfr_nan_p(mp.result)) {  // though no operand is a NaN
+  if (mpfr_nan_p(mp.result)) {  // an invalid operation: no operand is a NaN
     out.kind = ExactValue::Kind::kNan;
     out.flags |= kInvalid;
     return out;
@@ -137,7 +137,7 @@ FloatResult round_exact(FloatFormat format, const ExactValue& value, RoundingMod
   const int lead =
       value.exponent + static_cast<int>(std::bit_width(value.significand)) - 1;  // floor(log2)
   const int min_exponent = 1 - format.bias();
-  const int free_quantum = lead - format.frac_bits;  // of a format with unbounded exponents
+  const int free_quantum = lead - format.frac_bits;  // quantum if exponents were unbounded
   const int min_quantum = min_exponent - format.frac_bits;
   const int quantum = free_quantum > min_quantum ? free_quantum : min_quantum;
 

@@ -13,7 +13,7 @@ struct ExactValue {
   enum class Kind { kFinite, kInfinity, kNan };
   Kind kind = Kind::kFinite;
   bool negative = false;
-  bool exact_zero_sum = false;  // x - x: its sign depends on the rounding mode
+  bool exact_zero_sum = false;  // the result is x - x = 0; its sign depends on the rounding mode
   bool inexact = false;
   std::uint64_t significand = 0;
   int exponent = 0;

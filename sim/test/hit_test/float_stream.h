@@ -16,7 +16,7 @@ inline std::uint32_t bits(float value) {
 
 inline float from_bits(std::uint32_t word) { return std::bit_cast<float>(word); }
 
-/// Returns P = d I / (I . N) of words I, N and d, rounded in the units' order of operations.
+/// Returns P = d I / (I . N) for the words I, N, d. Operations are in the units' order.
 inline std::array<std::uint32_t, 3> point_of(const std::array<std::uint32_t, 7>& words) {
   float dot = 0.0f;
   for (int k = 0; k < 3; ++k) dot += from_bits(words[3 + k]) * from_bits(words[k]);
@@ -25,14 +25,14 @@ inline std::array<std::uint32_t, 3> point_of(const std::array<std::uint32_t, 7>&
   return point;
 }
 
-/// Random floats for tests of one of three kinds or mixed, all equally frequent: ordinary numbers
-/// around 1; any bit pattern; and zeros, subnormals, the largest and smallest normal numbers,
-/// infinities and NaN of either sign.
+/// Random floats of three kinds: ordinary numbers around 1; any bit pattern; special values (zeros,
+/// subnormals, largest and smallest normal numbers, infinities and NaNs, of either sign). A test
+/// has numbers of one kind or of all kinds; these four cases are equally frequent.
 class FloatStream {
  public:
   explicit FloatStream(std::uint32_t seed) : random_(seed) {}
 
-  /// Begins a test, whose numbers are of one kind, or mixed.
+  /// Begins a test and chooses its kind of numbers.
   void next_test() { kind_ = random_() % 4; }
 
   float operator()() {

@@ -1,4 +1,4 @@
-// The general-form unit: its timetable, and random streams against C++ floats.
+// Tests the general-form unit: its timetable, and random streams compared with C++ floats.
 #include <gtest/gtest.h>
 
 #include "Vgeneral_hit_test_unit_open.h"
@@ -11,7 +11,7 @@ namespace {
 
 using Point = std::array<std::uint32_t, 3>;
 
-// P = O + t I with t = -(d + N . O) / (N . I), rounded in the unit's order of operations.
+// Returns P = O + t I with t = -(d + N . O) / (N . I). Operations are in the unit's order.
 Point expected(const BusTest<10>& test) {
   const auto word = [&](int k) { return from_bits(test.words[k]); };
   float numerator = word(0);
@@ -25,7 +25,7 @@ Point expected(const BusTest<10>& test) {
 }
 
 TEST(GeneralHitTestUnit, MeetsThePlaneZEquals2) {
-  // N = (0, 0, 1), d = -2; from (1, 2, 3) along (1, 1, -1): at t = 1.
+  // N = (0, 0, 1), d = -2. The ray from (1, 2, 3) along (1, 1, -1) hits at t = 1.
   const BusTest<10> test{
       {bits(-2), bits(0), bits(0), bits(1), bits(1), bits(2), bits(3), bits(1), bits(1), bits(-1)}};
   Model<Vgeneral_hit_test_unit_open> unit;

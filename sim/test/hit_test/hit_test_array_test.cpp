@@ -1,5 +1,5 @@
-// An array equals its lanes side by side: Verilated as a whole, it gives the same results, clocks
-// and counters as models of one lane, of which RtlBurstUnit makes arrays.
+// An array Verilated as a whole has the same results, clocks and counters as an array made of
+// one-lane models, as RtlBurstUnit makes it.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// The paper's unit: its worked example, its timetable, and random streams against C++ floats.
+// Tests the paper's unit: worked example, timetable, and random streams compared with C++ floats.
 #include <gtest/gtest.h>
 
 #include "Vhit_test_unit_open.h"
@@ -22,7 +22,7 @@ const BusTest<7> kWorkedExample{{bits(3.3125f), bits(5.875f), bits(2.921875f), b
 TEST(HitTestUnit, WorkedExampleWithItsIntermediateValues) {
   Model<Vhit_test_unit_open> unit;
   unit.reset();
-  std::vector<std::uint32_t> products;  // those that enter the divider
+  std::vector<std::uint32_t> products;  // products that enter the divider
   std::uint32_t dot = 0;
   const auto* inside = unit->rootp;
   const auto results = stream_tests(unit, std::vector{kWorkedExample}, [&] {
@@ -35,8 +35,8 @@ TEST(HitTestUnit, WorkedExampleWithItsIntermediateValues) {
   EXPECT_EQ(results.at(0).point, (Point{0x3DC873FD, 0x3E31C2A2, 0x3DB0D093}));
 }
 
-// The word of the stream that I-1, I-2, I-3, N and d hold after each edge, for two tests in a row:
-// 0 to 6 are the first test's Ix to d, 7 to 13 the second's; kAny is not checked.
+// kHeld: the words that registers I-1, I-2, I-3, N and d hold after each edge, for two consecutive
+// tests. Words 0 to 6 are Ix to d of the first test, 7 to 13 of the second; kAny is not checked.
 TEST(HitTestUnit, RegistersAsFigure4DrawsThem) {
   constexpr int kAny = -1;
   constexpr int kHeld[14][5] = {
@@ -87,7 +87,7 @@ TEST(HitTestUnit, TakesATestEvery7ClocksAndAnswersIn10) {
     EXPECT_EQ(results[i].first_word, 1 + 7 * i);
     EXPECT_EQ(results[i].last_component, 10 + 7 * i);
   }
-  for (int clock = 0; clock < 30; ++clock) {  // then the unit is silent
+  for (int clock = 0; clock < 30; ++clock) {  // the unit then has no further output
     unit->valid_i = 0;
     unit.clock();
     EXPECT_FALSE(unit->valid_o);

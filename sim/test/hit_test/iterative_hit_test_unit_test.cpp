@@ -1,4 +1,4 @@
-// The iterative unit: the timetable, and random streams against C++ floats and the paper's unit.
+// Tests the iterative unit: timetable; random streams against C++ floats and the paper's unit.
 #include <gtest/gtest.h>
 
 #include "Viterative_hit_test_unit_behavioural.h"
@@ -11,7 +11,7 @@
 namespace raygate {
 namespace {
 
-constexpr unsigned kClocks = 34;  // from its first word to its last component
+constexpr unsigned kClocks = 34;  // from a test's first word to its last component
 
 template <class Top>
 class IterativeHitTestUnit : public testing::Test {
@@ -41,7 +41,7 @@ TYPED_TEST(IterativeHitTestUnit, TakesATestEvery7Clocks) {
     EXPECT_EQ(results[i].first_word, 1 + 7 * i);
     EXPECT_EQ(results[i].last_component, kClocks + 7 * i);
   }
-  for (int clock = 0; clock < 60; ++clock) {  // then the unit is silent
+  for (int clock = 0; clock < 60; ++clock) {  // the unit then has no further output
     this->unit_->valid_i = 0;
     this->unit_.clock();
     EXPECT_FALSE(this->unit_->valid_o);
@@ -62,7 +62,7 @@ TYPED_TEST(IterativeHitTestUnit, RandomStreamsEqualFloatArithmetic) {
   }
 }
 
-// A reset ends tests at any stage, and leaves nothing of them behind.
+// A reset ends tests at any stage, without effects on later tests.
 TYPED_TEST(IterativeHitTestUnit, ResetEndsAllTestsThatHaveBegun) {
   const auto tests = random_tests(1, 20);
   for (int clocks = 1; clocks < 60; ++clocks) {
@@ -81,7 +81,7 @@ TYPED_TEST(IterativeHitTestUnit, ResetEndsAllTestsThatHaveBegun) {
   }
 }
 
-// In other formats and rounding modes.
+// Other formats and rounding modes.
 TEST(IterativeHitTestUnits, GiveTheWordsOfThePapersUnit) {
   constexpr std::size_t kKinds = 6;
   const auto tests = random_tests(20260104, 20'000);

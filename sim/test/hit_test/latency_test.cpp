@@ -1,4 +1,4 @@
-// The latencies that hit_test_pipeline promises, counted.
+// Measures the latencies that the header of hit_test_pipeline states.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -14,8 +14,8 @@ constexpr int kDotLatency = 9, kDivideLatency = 17;
 constexpr int kClosedLatency = kDotLatency + kDivideLatency + 3;
 constexpr int kPointLatency = kClosedLatency + kDivideLatency;
 
-/// Clocks from a burst of one test, including the one that takes it, to its end and to its point; 0
-/// if that never comes.
+/// Clocks from a burst of one test, including the clock that takes the test, to the burst's end and
+/// to its point. 0 if there is no end or no point.
 struct Latencies {
   int closed = 0, point = 0;
 };
@@ -42,7 +42,7 @@ Latencies run(const float (&direction)[3], const float (&record)[16]) {
   return latencies;
 }
 
-// The triangle (-1, -1, 4), (3, -1, 4), (-1, 3, 4), seen from the origin; generous bounds.
+// Record of the triangle (-1, -1, 4), (3, -1, 4), (-1, 3, 4) for the origin, with generous bounds.
 constexpr float kRecord[16] = {0, 0, 16, 64, 0, 16, 4, -16, -16, 8, 16, 0, 4, 1e-3f, 1e-3f, 1e-3f};
 
 TEST(LatencyTest, OfAHit) {

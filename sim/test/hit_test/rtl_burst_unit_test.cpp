@@ -15,8 +15,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the tests for each array: a million with one lane, else 100,000; RAYGATE_STRESS sets
-/// another number.
+/// Returns the number of tests for each array: RAYGATE_STRESS if set, else a million with one lane
+/// and 100,000 with several.
 std::uint64_t tests_wanted(int lanes) {
   const char* wanted = std::getenv("RAYGATE_STRESS");
   return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : lanes == 1 ? 1'000'000 : 100'000;
@@ -33,8 +33,8 @@ void expect_same_events(const HitCounters& rtl, const HitCounters& cpu) {
 
 class RtlBurstUnitTest : public testing::TestWithParam<std::tuple<Arith, int>> {};
 
-/// Compares every field of every result, under random stalls, in many small and large batches; a
-/// batch starts before the previous one has finished, or alone.
+/// Compares every field of every result, under random stalls, in many small and large batches. A
+/// batch starts before or after the end of the previous batch.
 TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
   const auto [arith, lanes] = GetParam();
   const auto seed = static_cast<std::uint64_t>(lanes);
@@ -45,7 +45,7 @@ TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
   HitCounters rtl_total;
   std::uint64_t done = 0;
   const std::uint64_t wanted = tests_wanted(lanes);
-  // Stalls: none, either kind, both, and so heavy that the unit mostly waits.
+  // Stalls: none, either kind, both, and so frequent that the unit mostly waits.
   for (const auto& [no_test, not_taken, share] : {std::tuple{0, 0, 4},
                                                   {64, 0, 8},
                                                   {0, 96, 8},

@@ -1,4 +1,4 @@
-// The simulated unit behind the renderer's interface.
+// Tests the paper's simulated unit behind the renderer's interface.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,7 +1,7 @@
-// The paper's unit and the iterative one side by side, in formats and rounding modes other than the default: from the
-// same input words both give the same three words, the iterative one later.
+// The paper's unit and the iterative unit with the same inputs, in formats and rounding modes other than the default.
+// Both units return the same three words per test, the iterative unit later.
 //
-// bfloat16 reads the upper half of bus_i, binary16 the lower one.
+// bfloat16 units read the upper half of bus_i, binary16 units the lower half.
 module siblings_top (
   input  logic         clk_i,
   input  logic         rst_ni,

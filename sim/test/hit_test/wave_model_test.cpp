@@ -1,4 +1,4 @@
-// A waveform holds the hierarchy and the clocks that were run.
+// A waveform contains the hierarchy and all simulated clocks.
 #include "sim/wave_model.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-"""Checks what `make lecture EXAMPLE=1` shows: the worked example's words, and a waveform that fits GTKWave's save file.
+"""Checks the output of `make lecture EXAMPLE=1`: the worked example's words, and a waveform with the signals of GTKWave's save file.
 
 usage: worked_example_test.py WORKED_EXAMPLE SAVE_FILE
 """
@@ -28,7 +28,7 @@ class WorkedExample(unittest.TestCase):
     """Runs the program with and without the paper's divider."""
 
     def test_words(self):
-        """P is the paper's words with the paper's divider, and correctly rounded without."""
+        """With the paper's divider, P has the paper's words. With the exact divider, P is correctly rounded."""
         self.assertRegex(last_line(), "^P = 3DC873FD 3E31C2A2 3DB0D093 .* 10 clocks ")
         self.assertRegex(last_line("--paper-divider"), "^P = 3DC873F8 3E31C2A0 3DB0D090 .* 10 clocks ")
 

@@ -1,5 +1,4 @@
-// A ray_core_axi with a user of its registers, a memory with random pauses and a user of its
-// results.
+// Test bench of ray_core_axi: accesses registers, simulates memory with pauses, takes results.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,12 +26,12 @@ namespace raygate::test {
 constexpr std::uint32_t kSeed = 20261122;
 constexpr std::uint64_t kBase = 0x9234'5678'8000'0000, kResults = 0x0123'4567'89AB'CFC0;
 
-/// `Top`: a class that Verilator made of ray_core_axi, with an AXI4 port as wide as m_axi_rdata.
+/// `Top`: Verilator's class of ray_core_axi, with an AXI4 port as wide as m_axi_rdata.
 template <class Top>
 class AxiBench : public testing::Test {
  protected:
   static constexpr unsigned kWords = sizeof(Top::m_axi_rdata) / 4, kBeats = 16 / kWords;
-  using Words = std::array<std::uint32_t, kWords>;  // of one beat
+  using Words = std::array<std::uint32_t, kWords>;  // the data of one beat
 
   AxiBench() {
     model_->s_axil_awvalid = model_->s_axil_wvalid = model_->s_axil_arvalid = 0;
@@ -47,7 +46,7 @@ class AxiBench : public testing::Test {
     model_.reset();
   }
 
-  /// Simulates a clock, with memory and the user of the results.
+  /// Simulates a clock of the core, of memory and of the user of results.
   void clock() {
     const bool is_reading = !beats_.empty() || model_->m_axi_rvalid != 0;
     const bool is_writing = bursts_ != answered_;
@@ -120,7 +119,7 @@ class AxiBench : public testing::Test {
     if (ray_taken) model_->ray_valid_i = 0;
   }
 
-  /// Returns the response: 0, or 2 if refused.
+  /// Writes a register. Returns the response: 0, or 2 if the write is refused.
   unsigned write(std::uint32_t address, std::uint32_t data) {
     model_->s_axil_awaddr = address;
     model_->s_axil_wdata = data;
@@ -138,7 +137,7 @@ class AxiBench : public testing::Test {
     }
   }
 
-  /// Sends results to a buffer for `records` results, or, with 0, to the stream.
+  /// Sends results to a buffer in memory with room for `records` results; 0: to the stream.
   void use_buffer(std::uint32_t records) {
     write(RAYGATE_RESULTS, static_cast<std::uint32_t>(kResults) | 31);
     write(RAYGATE_RESULTS_HIGH, static_cast<std::uint32_t>(kResults >> 32));
@@ -157,7 +156,7 @@ class AxiBench : public testing::Test {
     return data;
   }
 
-  /// Sets the memory's base and a camera before the bodies: pixels 0.05 apart at distance 1.
+  /// Sets the memory's base, and a camera in front of the scene: pixels 0.05 apart at distance 1.
   void look() {
     write(0x014, static_cast<std::uint32_t>(kBase));
     write(0x018, static_cast<std::uint32_t>(kBase >> 32));
@@ -167,7 +166,7 @@ class AxiBench : public testing::Test {
     write(0x060, kGrid.down);
   }
 
-  /// Draws `side` x `side` pixels; ends_ then has their ends.
+  /// Draws `side` x `side` pixels. ends_ then has the pixels' final results.
   void draw(std::uint32_t side) {
     results_.clear();
     ends_.clear();
@@ -179,14 +178,14 @@ class AxiBench : public testing::Test {
       ASSERT_LT(n, 100'000);
       clock();
     }
-    while ((read(0x008) & 4) != 0) clock();  // lines read ahead
+    while ((read(0x008) & 4) != 0) clock();  // waits for prefetched lines
     for (const CoreResult& result : results_) {
       if (result.kind == CoreResult::Kind::kEnd) ends_[result.tag] = result;
     }
     ASSERT_EQ(ends_.size(), side * side);
   }
 
-  /// Returns the reference's end for this pixel.
+  /// Returns the reference model's final result for this pixel.
   static CoreResult reference(const MemoryImage& image, std::uint32_t pixel) {
     const CoreRay ray{.ray = {kEye, kGrid.direction(static_cast<std::uint16_t>(pixel),
                                                     static_cast<std::uint16_t>(pixel >> 16))}};
@@ -195,8 +194,8 @@ class AxiBench : public testing::Test {
     return results.back();
   }
 
-  /// Traces rays that start on triangles but do not name them, so that many end in doubt; every
-  /// fourth has a limit before all hits. Stops after `clocks` clocks, or when all have ended.
+  /// Traces rays that start on triangles but do not name them as sources; many have doubts. Every
+  /// fourth ray has t_max before all hits. Stops after `clocks` clocks, or when all rays end.
   void trace(std::size_t rays, int clocks) {
     test::Random random;
     std::size_t sent = 0, ended = 0, seen = 0;
@@ -230,12 +229,12 @@ class AxiBench : public testing::Test {
   Bvh bvh_{test::scene_of(test::bodies())};
   MemoryImage image_{bvh_};
   bool is_single_ = false;     // memory accepts a write only while no read is open, and vice versa
-  bool takes_results_ = true;  // whether the stream's user does
+  bool takes_results_ = true;  // whether the user takes results from the stream
   int stalled_ = 0;            // clocks for which a beat has waited for RREADY
   std::mt19937 random_{kSeed};
   Model<Top> model_;
   std::deque<Beat> beats_;
-  std::size_t bursts_ = 0, answered_ = 0, unanswered_ = 0;  // of results written to memory
+  std::size_t bursts_ = 0, answered_ = 0, unanswered_ = 0;  // numbers of bursts with results
   std::vector<std::uint32_t> written_;
   std::vector<CoreResult> results_;
   std::map<std::uint32_t, CoreResult> ends_;  // by pixel

@@ -1,5 +1,5 @@
-// axi_read_manager before a memory that answers bursts in any order, their beats mixed, with random
-// pauses on every channel: each tag gets its own line, once. sim/checks watches the handshakes.
+// Tests axi_read_manager with a memory that answers bursts in any order, with interleaved beats and
+// random pauses on every channel. Each tag gets its own line, once. sim/checks checks handshakes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,12 +19,12 @@ namespace {
 constexpr std::uint32_t kSeed = 20261122;
 constexpr unsigned kIds = 8;
 
-/// Word n of a line of memory.
+/// Returns word n of a line of memory.
 std::uint32_t word_of(std::uint32_t line, unsigned n) {
   return static_cast<std::uint32_t>((std::uint64_t{line} * 16 + n) * 0x9E37'79B9'7F4A'7C15 >> 32);
 }
 
-/// Sets a port's bytes, whatever its type in Verilator's class.
+/// Sets a port of any type in Verilator's class.
 template <class Port>
 void set_words(Port& port, const std::vector<std::uint32_t>& words) {
   ASSERT_EQ(sizeof port, 4 * words.size());
@@ -52,7 +52,7 @@ TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
   std::map<std::uint64_t, std::uint32_t> waiting;  // lines by tag
   std::set<std::uint32_t> failing_lines;
   std::uint64_t next_tag = 0, address = 0;
-  std::uint32_t line = 0;  // the last one requested, at `address`
+  std::uint32_t line = 0;  // the line requested last, at `address`
   unsigned answering = 0, given = 0, mixed = 0, full = 0, failing = 0, failed = 0, last_id = 0;
   bool fails = false;
   for (int clock = 0; clock < 60'000; ++clock) {
@@ -72,10 +72,10 @@ TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
       model->read_line_i = random() % (1u << 28);
       model->read_id_i = next_tag++ % 512;
     }
-    // In every other period, ARREADY waits for ARVALID.
+    // In every other period of 2,000 clocks, ARREADY waits for ARVALID.
     model->axi_arready_i =
         random() % 8 < eager && (clock / 2'000 % 2 == 0 || model->axi_arvalid_o != 0);
-    // Now and then not ready long enough for more lines to arrive, at any port width.
+    // Sometimes not ready for so long that several lines arrive meanwhile, at any port width.
     model->line_ready_i = random() % 8 < 8 - eager / 2 && clock / 300 % 4 != 3;
     // Offers a beat of any open burst; an offered beat stays until it is taken.
     if (model->axi_rvalid_i == 0 && random() % 8 < eager) {

@@ -1,8 +1,8 @@
-// Random traffic at the AXI ports of the ray core, checked against a small model of it: registers
-// are read and written with pauses while it draws and traces; memory answers in any order, with
-// errors and, now and then, with noise; results go to the stream or the buffer; there are aborts
-// and resets in mid-run. Every ray ends once, with the reference's answer or with an error that has
-// a cause. RAYGATE_TRAFFIC=<epochs> makes the test long (make test LONG=traffic).
+// Random traffic at the AXI ports of the ray core, compared with a small model of the core.
+// Registers are read and written with pauses while the core draws and traces. Memory answers in any
+// order, with errors and sometimes with noise. Results go to the stream or the buffer. There are
+// aborts, and resets in mid-run. Every ray ends once, with the reference model's result or with an
+// error that has a cause. RAYGATE_TRAFFIC=<epochs> sets the length (make test LONG=traffic).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,15 +27,15 @@ namespace {
 
 constexpr std::uint32_t kSeed = 20261123;
 constexpr std::uint64_t kResults = 0xFEDC'BA98'7654'3FC0;
-constexpr std::uint32_t kUsers = 0x8000'0000;       // in the tags of the user's rays
-constexpr std::uint32_t kCapability = 0x7013'0401;  // of 16 rays and 64-bit data: registers.md
+constexpr std::uint32_t kUsers = 0x8000'0000;       // bit in the tags of the user's own rays
+constexpr std::uint32_t kCapability = 0x7013'0401;  // for 16 rays and 64-bit data: registers.md
 constexpr glm::vec3 kEye{0.25f, 0.3f, 2.5f};
 
 class AxiTrafficTest : public testing::Test {
  protected:
   AxiTrafficTest() { reset(); }
 
-  // ---- The surroundings
+  // ---- Memory, results and user's rays around the core
 
   struct Burst {
     std::uint32_t id;
@@ -75,8 +75,8 @@ class AxiTrafficTest : public testing::Test {
   [[nodiscard]] std::size_t unanswered() const {
     return std::min<std::size_t>(addresses_, written_.size() / 8) - answered_;
   }
-  /// Whether the core is certainly busy, and whether it may be: after an abort the number of rays
-  /// left out of a rectangle is unknown.
+  /// is_busy: the core is certainly busy. may_be_busy: the core may be busy, because after an abort
+  /// the number of skipped rays of a rectangle is unknown.
   [[nodiscard]] bool is_busy() const {
     return in_flight_ != 0 || addresses_ != answered_ || (pixels_left_ != 0 && !aborted_);
   }
@@ -142,7 +142,7 @@ class AxiTrafficTest : public testing::Test {
     ++clocks_;
   }
 
-  /// Offers the next beat of any burst; its data are noise if it has an error or memory is wild.
+  /// Offers the next beat of any burst. The data are noise if the beat has an error or if wild_.
   void offer_beat() {
     const std::size_t n = random_() % bursts_.size();
     Burst& burst = bursts_[n];
@@ -187,7 +187,7 @@ class AxiTrafficTest : public testing::Test {
     check(sent->second);
   }
 
-  /// Checks a ray's end: the reference's, or an error that has a cause.
+  /// Checks a ray's final result: it must be the reference model's, or an error that has a cause.
   void check(const Sent& sent) {
     const CoreResult& end = sent.words.back();
     if (end.error == CoreResult::Error::kAbort) {
@@ -213,7 +213,7 @@ class AxiTrafficTest : public testing::Test {
     ASSERT_EQ(end.point, expected[0].point);
   }
 
-  // ---- Registers, with pauses; address and data in any order
+  // ---- Register accesses, with pauses; address and data come in any order
 
   unsigned write(std::uint32_t address, std::uint32_t data, unsigned strobes = 15) {
     model_->s_axil_awaddr = address;
@@ -258,7 +258,7 @@ class AxiTrafficTest : public testing::Test {
     model_->s_axil_rready = 0;
     return data;
   }
-  /// Writes a plain register with writable `bits`. Returns false if refused as the core is busy.
+  /// Writes a plain register with writable `bits`. Returns false if refused because of a busy core.
   bool set(std::uint32_t address, std::uint32_t data, std::uint32_t bits = ~0u) {
     const unsigned response = write(address, data);
     EXPECT_TRUE(response == 0 ? !all_busy_ : any_busy_) << std::hex << address;
@@ -276,7 +276,7 @@ class AxiTrafficTest : public testing::Test {
   MemoryImage images_[2]{MemoryImage(bodies_), MemoryImage(box_)};
   const MemoryImage* image_ = images_;
   PixelGrid grid_{};
-  bool wild_ = false;     // memory is noise
+  bool wild_ = false;     // memory returns noise
   unsigned failing_ = 0;  // one beat in this many has an error; 0: none
   unsigned eager_ = 4, pause_ = 2;
   std::mt19937 random_{kSeed};
@@ -287,19 +287,19 @@ class AxiTrafficTest : public testing::Test {
   std::vector<CoreRay> to_send_;
   std::array<std::uint32_t, 32> words_{};  // plain registers
   std::uint32_t enable_ = 0, next_tag_ = 0;
-  std::size_t addresses_ = 0, answered_ = 0;  // numbers of records
+  std::size_t addresses_ = 0, answered_ = 0;  // numbers of results: address taken, acknowledged
   std::vector<std::uint32_t> written_;
   long in_flight_ = 0, pixels_left_ = 0;
   bool any_busy_ = false, all_busy_ = false, aborted_ = false, drawn_ = false;
   std::set<std::uint32_t> failed_lines_;
-  std::uint32_t answering_ = 0;  // the line of the beat on offer
+  std::uint32_t answering_ = 0;  // the line of the offered beat
   unsigned doubts_ = 0, ray_errors_ = 0, bad_beats_ = 0, bad_answers_ = 0;
   unsigned ends_ = 0;  // ends since the counters were cleared
   unsigned compared_ = 0, refused_ = 0, resets_ = 0, aborts_ = 0, wild_ends_ = 0, failures_ = 0;
   std::uint64_t clocks_ = 0;
 };
 
-/// Sets another memory, camera and buffer, while nothing is traced.
+/// Sets another memory, camera and buffer. Must be called while nothing is traced.
 void AxiTrafficTest::configure() {
   image_ = &images_[random_() % 2];
   wild_ = one_in(6);
@@ -350,7 +350,7 @@ void AxiTrafficTest::start() {
   }
 }
 
-/// Makes a random access, whether the core is busy or not; it must answer as registers.md says.
+/// Makes a random register access, at any time. The response must be that of registers.md.
 void AxiTrafficTest::disturb() {
   const std::uint32_t word = random_() % 32, data = random_();
   switch (random_() % 8) {
@@ -397,7 +397,7 @@ void AxiTrafficTest::disturb() {
   }
 }
 
-/// Waits until nothing is traced, emptying the buffer whenever it is full; checks the end state.
+/// Waits until nothing is traced, and empties the buffer whenever it is full. Checks the end state.
 void AxiTrafficTest::settle() {
   for (int n = 0; !to_send_.empty() || model_->ray_valid_i != 0 ||
                   (read(RAYGATE_STATUS) & ~RAYGATE_STATUS_READING) != 0;

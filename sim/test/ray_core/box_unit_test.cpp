@@ -1,4 +1,4 @@
-// box_unit against its reference, bit for bit, with a node in every clock.
+// Compares box_unit with its reference model, bit for bit, with a node in every clock.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -21,8 +21,8 @@ std::uint32_t bits(const Port& port, unsigned first, unsigned width) {
   return static_cast<std::uint32_t>(two >> first % 32 & ((std::uint64_t{1} << width) - 1));
 }
 
-/// Returns enter 2^(exponent - 127 - 12) in the unit's format: the upper 19 bits of a binary32
-/// number's magnitude, all ones if its exponent field would exceed 255.
+/// Returns enter * 2^(exponent - 127 - 12) in the unit's format: the upper 19 bits of the magnitude
+/// of a binary32 number, or all ones if the exponent field would exceed 255.
 std::uint32_t ordered_word(std::uint32_t enter, std::uint32_t exponent) {
   if (enter == 0) return 0;
   const auto top = static_cast<std::uint32_t>(std::bit_width(enter)) - 1;
@@ -37,7 +37,7 @@ TEST(BoxUnitTest, EqualsItsReference) {
   model.reset();
   std::deque<BoxCase> taken;  // the latest first
   int entered = 0;
-  BoxRay before;  // of the previous node: the unit takes the ray a clock later
+  BoxRay before;  // the previous node's ray: the unit takes a ray one clock after its node
   for (int clock = 0; clock < 400'000; ++clock) {
     const BoxCase box = cases.next();
     const BoxRay ray = box.read();

@@ -1,5 +1,5 @@
-// csr on AXI4-Lite with random pauses on every channel, against a model of its header: every word
-// read and every output in every clock.
+// Compares csr with a model of its header: every word read, and every output in every clock, under
+// AXI4-Lite accesses with random pauses on every channel.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -36,8 +36,8 @@ class CsrTest : public testing::Test {
   std::mt19937 random_{kSeed};
 };
 
-/// Reads and writes any word in close succession while the core works: each word and each output is
-/// as the header says.
+/// Reads and writes any words in close succession while the core works. Each word and each output
+/// must be as the header says.
 TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::array<std::uint32_t, 32> words{};
@@ -129,7 +129,7 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     }
     ASSERT_EQ(model_->interrupt_o, (enable & flags) != 0);
 
-    // What the model does in this clock.
+    // The model's events in this clock.
     const bool takes_address = model_->axi_awvalid_i != 0 && !has_address;
     const bool takes_data = model_->axi_wvalid_i != 0 && !has_data;
     const bool write = has_address && has_data && !written;

@@ -1,4 +1,4 @@
-// The ray core behind AXI with exact units, Clocks = 11 and the default data width: it resolves all
+// The ray core behind AXI with an exact unit, Clocks = 11 and the default data width resolves all
 // doubts of a picture itself.
 #include "Vray_core_axi_exact.h"
 #include "sim/test/ray_core/axi_bench.h"

@@ -1,5 +1,5 @@
-// The exact core in simulation gives the words of its reference model, bit for bit, whatever delays
-// it. Tests: exact_resolver
+// The simulated exact core has the results of its reference model, bit for bit, under any delays.
+// Tests: exact_resolver
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ constexpr CoreSet kExact{.exact = true};
 /// The core has four rays, stacks of one group and caches of 16 lines.
 class ExactResolverTest : public testing::Test {
  protected:
-  /// Returns the bodies, each triangle a second time with rotated corners: every hit is a tie.
+  /// Returns the bodies with each triangle twice, once with rotated corners: every hit is a tie.
   static std::vector<Corners> doubled() {
     std::vector<Corners> mesh = test::bodies();
     const std::size_t count = mesh.size();
@@ -39,7 +39,7 @@ class ExactResolverTest : public testing::Test {
     return mesh;
   }
 
-  /// Returns the results by ray; all must be ends.
+  /// Returns the results by ray. All results must be final (kEnd).
   static std::vector<CoreResult> words(CoreUnit& unit, std::span<const MemoryLine> lines,
                                        std::span<const CoreRay> rays) {
     std::vector<CoreResult> results, words(rays.size());
@@ -51,7 +51,7 @@ class ExactResolverTest : public testing::Test {
     return words;
   }
 
-  /// Compares triangle, t, its bound and P with the reference's.
+  /// Compares triangle, t, the bound of t's error and P with the reference model's.
   void compare(Core& core, std::vector<CoreRay> rays) {
     for (std::uint32_t i = 0; i < rays.size(); ++i) rays[i].tag = i;
     ReferenceCore reference(ReferenceCore::kStackDepth, true);
@@ -136,8 +136,8 @@ TEST_F(ExactResolverTest, NearestHitsAreTheCpuIntersectors) {
   EXPECT_EQ(intersector.counters().exact_inside, 0u);
 }
 
-/// Many doubts per ray: all triangles of a fan are met at their common corner, so that doubts wait
-/// for room.
+/// Many doubts per ray: rays meet all triangles of a fan at their common corner. Doubts must then
+/// wait for room in the queue.
 TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
   std::vector<Corners> fan;
   for (int n = 0; n < 600; ++n) {
@@ -186,8 +186,8 @@ TEST_F(ExactResolverTest, LongWorkIsWaitedFor) {
                     40, {.ray = {glm::vec3(0x1.1p-100f), scaled_direction({1, 1, 1.5})}}));
 }
 
-/// One read in 32 returns an error, even for lines read before, and now and then rays are aborted:
-/// these rays report it, all others have the reference's hit.
+/// One read in 32 returns an error, even for lines read before, and sometimes rays are aborted.
+/// Affected rays report an error; all others have the reference model's hit.
 TEST_F(ExactResolverTest, FailedRaysSayWhyAndLeaveNothing) {
   std::vector<CoreRay> rays;
   for (const Ray& ray : some_rays(mesh_, random_, 1'000)) {

@@ -1,5 +1,5 @@
-// line_cache before a memory that answers in any order, with random pauses: each wanted request
-// gets its line once, or its error, which is not cached; a line in flight is not requested again.
+// Tests line_cache with a memory that answers in any order, with random pauses. Each demand request
+// gets its line or an error, once. Errors are not cached. A line in flight is not requested again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,8 +41,8 @@ class LineCacheTest : public testing::Test {
     return n % kLines + (high == 0 ? 0 : kLines << (high + part_) % 24);
   }
 
-  /// Simulates a clock, with a chance of `of_8` in 8 of a new request for one of `range` lines,
-  /// wanted or not. An unwanted request may be withdrawn.
+  /// Simulates a clock, with a chance of `of_8` in 8 of a new demand or prefetch request for one of
+  /// `range` lines. A prefetch request may be withdrawn.
   void clock(unsigned of_8, unsigned range, bool all_wanted = true) {
     if (model_->demand_i == 0 && random_() % 4 == 0) model_->valid_i = 0;
     if (model_->valid_i == 0 && random_() % 8 < of_8) {
@@ -127,7 +127,7 @@ class LineCacheTest : public testing::Test {
   Miss fill_{};
   bool filling_ = false;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> waiting_;  // requests by ray and content
-  std::array<std::uint32_t, 2> taken_{};                            // the requests taken last
+  std::array<std::uint32_t, 2> taken_{};                            // the last two requests taken
   unsigned fails_of_256_ = 0, errors_ = 0, part_ = 0, requests_ = 0, answers_ = 0, misses_ = 0,
            most_targets_ = 0;
 };
@@ -146,7 +146,7 @@ TEST_F(LineCacheTest, EveryRequestGetsItsLineOnce) {
   EXPECT_LT(misses_, requests_ * 3 / 4);
 }
 
-/// A line with an error is read again; one without is not.
+/// A line with an error is read again. A line without an error is not.
 TEST_F(LineCacheTest, ErrorsAreNotKept) {
   fails_of_256_ = 64;
   for (; part_ < 20; ++part_) {
@@ -181,7 +181,7 @@ TEST_F(LineCacheTest, LinesOnTheirWayAreReadOnce) {
   }
 }
 
-/// A line requested before it was wanted is not requested again, neither in flight nor cached.
+/// A line that was prefetched is not requested again on demand, neither in flight nor cached.
 TEST_F(LineCacheTest, LinesThatWereNotWantedAreRead) {
   for (int part = 0; part < 200; ++part) {
     drain();

@@ -1,5 +1,5 @@
-"""Checks that the ray core's memories of more than 2,048 bits, as Yosys elaborates them, have clocked read ports, as
-hw/common's ram has."""
+"""Checks that all memories of more than 2,048 bits in the ray core, as elaborated by Yosys, have clocked read ports, like hw/common's
+ram."""
 
 import json
 import pathlib
@@ -14,7 +14,7 @@ LIMIT = 2048
 
 
 def memories(top: str) -> dict:
-    """Returns the memories above LIMIT of a top and its submodules: by module and name, the bits and whether the read port has a clock."""
+    """Returns the memories of more than LIMIT bits in a top, by module and name: their bits, and whether their read ports have a clock."""
     with tempfile.TemporaryDirectory() as folder:
         netlist = pathlib.Path(folder) / "netlist.json"
         yosys.run(f"{yosys.read(cores.used(top, cores.files('ray_core')), top)}\n"
@@ -33,7 +33,7 @@ def memories(top: str) -> dict:
 
 
 def main() -> int:
-    """Reports the memories. Returns 1 if one has no clock or there is none."""
+    """Reports the memories. Returns 1 if a memory has no clock or if there are no memories."""
     found = memories("ray_core_axi")
     without = {name: bits for name, (bits, clocked) in found.items() if not clocked}
     for name, bits in without.items():

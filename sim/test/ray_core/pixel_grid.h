@@ -1,4 +1,4 @@
-// Pixel grid: reference model of the ray core's ray generator, bit for bit.
+// Reference model of the ray core's ray generator, bit for bit.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,16 @@ namespace raygate {
 
 /// Pixels of a picture relative to the eye: the paper's equation 1. Vectors of any finite length.
 struct PixelGrid {
-  glm::vec3 first{0.0f};  ///< to the middle of pixel (0, 0)
-  glm::vec3 right{0.0f};  ///< from a pixel to the next in its row
-  glm::vec3 down{0.0f};   ///< from a row to the next
+  glm::vec3 first{0.0f};  ///< from the eye to the middle of pixel (0, 0)
+  glm::vec3 right{0.0f};  ///< from a pixel to the next pixel in its row
+  glm::vec3 down{0.0f};   ///< from a row to the next row
 
-  /// Returns the direction through pixel (x, y), scaled so that its largest component is in [1, 2);
-  /// components below 2^-126 become zero. A sum that is zero or not finite stays so.
+  /// Returns the direction through pixel (x, y), scaled so that its largest magnitude is in [1, 2).
+  /// Scaled components below 2^-126 become zero. Zero or non-finite directions are not scaled.
   [[nodiscard]] glm::vec3 direction(std::uint16_t x, std::uint16_t y) const;
 };
 
-// The steps are those of hw/ray_core/ray_generator.sv.
+// Uses the operations of hw/ray_core/ray_generator.sv in the same order.
 inline glm::vec3 PixelGrid::direction(std::uint16_t x, std::uint16_t y) const {
   glm::vec3 way = first + static_cast<float>(y) * down;
   way = way + static_cast<float>(x) * right;

@@ -1,5 +1,5 @@
-// The ray core behind AXI, in cases beyond random traffic (axi_traffic_test): rectangles that end
-// or are aborted, reads while results are not taken, reproducible results.
+// Tests the ray core behind AXI in cases that random traffic (axi_traffic_test) does not cover: end
+// and abort of rectangles, reads while results are not taken, reproducible results.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 class RayCoreAxiTest : public test::AxiBench<Vray_core_axi> {};
 
-/// A rectangle is done when its own rays have ended, whatever rays come after them.
+/// A rectangle is done when its own rays have ended, even if other rays follow them.
 TEST_F(RayCoreAxiTest, ARectangleIsDoneWithItsOwnRays) {
   look();
   write(0x00C, 2);
@@ -41,7 +41,7 @@ TEST_F(RayCoreAxiTest, ARectangleIsDoneWithItsOwnRays) {
   EXPECT_GT(results_.size(), before) << "they go on";
 }
 
-/// An aborted picture ends within some clocks, and the next one is complete.
+/// An aborted picture ends within some clocks, and the next picture is complete.
 TEST_F(RayCoreAxiTest, RaysAreGivenUp) {
   look();
   for (int round = 0; round < 5; ++round) {
@@ -73,8 +73,8 @@ TEST_F(RayCoreAxiTest, RaysAreGivenUp) {
   }
 }
 
-/// Memory is read whether results are taken from the stream and the buffer or not: the core
-/// requests no more tests than it can keep.
+/// Reads do not depend on whether results are taken from the stream and the buffer: the core starts
+/// no more tests than it has room for.
 TEST_F(RayCoreAxiTest, ReadsDoNotWaitForResults) {
   look();
   takes_results_ = false;
@@ -89,7 +89,7 @@ TEST_F(RayCoreAxiTest, ReadsDoNotWaitForResults) {
   EXPECT_GT(std::ranges::count_if(results_, is_doubt), 100);
 }
 
-/// A bridge that handles one transaction at a time, as one from AXI to AHB does.
+/// Memory behind a bridge that handles one transaction at a time, like an AXI-to-AHB bridge.
 TEST_F(RayCoreAxiTest, WritesWaitForReadsAndCome) {
   look();
   is_single_ = true;
@@ -99,7 +99,7 @@ TEST_F(RayCoreAxiTest, WritesWaitForReadsAndCome) {
   EXPECT_GT(answered_, 400u) << "300 ends, and doubts";
 }
 
-/// A full buffer that is never emptied: the core still accepts all lines that it requested.
+/// With a full buffer that is never emptied, the core still accepts all lines that it requested.
 TEST_F(RayCoreAxiTest, AFullBufferStopsNoRead) {
   look();
   use_buffer(4);
@@ -108,7 +108,7 @@ TEST_F(RayCoreAxiTest, AFullBufferStopsNoRead) {
   EXPECT_EQ(answered_, 4u);
 }
 
-/// Records of a frame in memory, from the random power-up state of a seed.
+/// Results of a frame in memory, from the random power-up state of a seed.
 class Frame : public RayCoreAxiTest {
  public:
   std::vector<std::uint32_t> words() {

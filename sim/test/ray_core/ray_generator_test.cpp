@@ -1,4 +1,4 @@
-// ray_generator against its reference, bit for bit, with random pauses: each pixel once.
+// Compares ray_generator with its reference model under random pauses: each pixel comes once.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -99,7 +99,7 @@ TEST(RayGeneratorTest, EqualsItsReference) {
   EXPECT_GT(infinities, 0) << "refused by the core, so not to be scaled";
 }
 
-/// Resets in mid-run leave nothing of the frame, and the next one is complete.
+/// After resets in mid-run, no ray of the old frame follows, and the next frame is complete.
 TEST(RayGeneratorTest, ResetsInMidRunLeaveNothing) {
   Model<Vray_generator> model;
   std::mt19937 random(kSeed);
@@ -142,7 +142,7 @@ TEST(RayGeneratorTest, ResetsInMidRunLeaveNothing) {
   EXPECT_GT(broken_off, 20);
 }
 
-/// One ray per clock, if each is taken at once.
+/// One ray comes per clock if the user is always ready.
 TEST(RayGeneratorTest, GivesARayAClock) {
   Model<Vray_generator> model;
   model->start_i = model->stop_i = 0;

@@ -1,5 +1,5 @@
-// triangle_test against its reference model, bit for bit, with a triangle in every clock or in
-// every eleventh.
+// Compares triangle_test with its reference model, bit for bit, with a triangle in every clock or
+// in every eleventh clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace raygate {
 namespace {
 
 constexpr std::uint32_t kSeed = 20261122;
-constexpr unsigned kRays = 64;  // contexts, more than tests in flight
+constexpr unsigned kRays = 64;  // rays in flight; more than tests in flight
 
 struct Triangle {
   glm::vec3 origin, direction;
@@ -28,9 +28,9 @@ struct Triangle {
   bool is_valid = false, is_exact = false, is_error = false, is_ignored = false;
 };
 
-/// Triangles of any bit patterns, or ordinary ones: flat, thin, far away or in a plane near the
-/// origin, even with products beyond the range of valid planes. Two in three rays go to a point of
-/// their triangle.
+/// Random triangles with any bit patterns, or ordinary ones: flat, thin, far away, or in a plane
+/// near the origin, some with products beyond the range of valid planes. Two in three rays aim at a
+/// point of the triangle.
 class Triangles {
  public:
   Triangle operator()() {
@@ -65,7 +65,7 @@ class Triangles {
       }
       return next;
     }
-    // At these scales N or d is close to its smallest or largest valid size.
+    // At these scales (exponents), N or d is close to its smallest or largest valid magnitude.
     constexpr int kEnds[] = {-50, -33, 43, 63};
     const int scale = one_in(2) ? 0 : kEnds[random_() % 4] + between(-4, 4);
     for (glm::vec3& corner : next.corners) corner = point(scale - smaller(30));
@@ -116,7 +116,7 @@ class TriangleTest : public testing::Test {
     fields.put(triangle.is_valid, 1);
   }
 
-  /// Compares the verdict on this triangle with the reference's.
+  /// Compares the verdict on this triangle with the reference model's.
   void check(const Triangle& triangle, std::uint32_t number) {
     PackedFields fields(model_->verdict_o);  // ray_core_pkg::verdict_t
     glm::vec3 point;

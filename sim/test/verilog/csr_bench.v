@@ -1,5 +1,5 @@
-// csr with four-state values: unwritten registers are zero, and a counter that carries into its high word
-// between the reads of its two words is read as one number.
+// Simulates csr with four-state values. Unwritten registers are zero. A counter is read consistently even if it carries
+// into its high word between the reads of its two words.
 module bench;
   reg  clk = 0, reset_n = 0, arvalid = 0, busy = 0;
   reg  [11:0] address = 0;

@@ -1,9 +1,9 @@
-"""Checks that Icarus Verilog compiles and runs what `make synth VERILOG=1` writes, with the right words.
+"""Checks that Icarus Verilog compiles and runs the output of `make synth VERILOG=1`, with the right results.
 
 usage: icarus_test.py TOP CASES [ecp5] [bench.Name=value ...] [Name=value ...]
-beside it: TOP_bench.v, with parameters of its own, whose last line counts CASES
 
-With ecp5, the netlist that `make fpga` places runs instead, with Yosys's models of that device's cells.
+The test bench is TOP_bench.v in this folder; bench.Name=value sets its parameters. The last line that it prints must count CASES cases.
+With ecp5, runs the netlist that `make fpga` places instead, with Yosys's models of the ECP5's cells.
 """
 
 import pathlib
@@ -23,7 +23,7 @@ def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.
     netlist = out.with_suffix(".json")
     yosys.run(scripts.fpga(design, "ecp5", "", netlist), out.with_suffix(".map.log"))
     empty = " ".join(f"-unset INITVAL_{row:02X}" for row in range(64))
-    # Yosys writes its cell models out as it reads them: Icarus Verilog refuses their $error.
+    # Icarus Verilog rejects $error in Yosys's cell models, so Yosys reads the models and writes them without it.
     yosys.run(f"read_json {netlist}\nchtype -set block_ram t:DP16KD\nsetparam {empty} t:block_ram\n"
               f"delete =$paramod*\nread_verilog -overwrite +/ecp5/cells_sim.v\nhierarchy -top {top}\nproc\n"
               f"setattr -mod -unset lib_whitebox *\nwrite_verilog -noattr {out}", out.with_suffix(".log"))
@@ -31,7 +31,7 @@ def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.
 
 
 def main():
-    """Writes, compiles and runs. Returns whether a word is wrong or a case is missing: the exit status."""
+    """Writes, compiles and runs the test. Returns the exit status: True (1) if a word is wrong or a case is missing."""
     top, cases, *parameters = sys.argv[1:]
     bench = [word for word in parameters if word.startswith("bench.")]
     parameters = [word for word in parameters if word not in bench]

@@ -1,5 +1,5 @@
-// ram of 512 words of 72 bits in two parts: random words are written and read. A read at a write's edge gives the old
-// word, and holds it until the next read.
+// Simulates ram of 512 words of 72 bits in two parts, with random writes and reads. A read at the same edge as a write
+// returns the old word. The output holds until the next read.
 module bench;
   reg clk = 0, read = 0;
   reg [1:0] write = 0;
@@ -16,7 +16,7 @@ module bench;
   initial begin
     for (clocks = 0; clocks < 4000; clocks = clocks + 1) begin
       {write, read} = $random(seed);
-      // few addresses, near both ends
+      // Few addresses, near both ends
       write_address = $random(seed) & 9'h10f;
       read_address  = $random(seed) & 9'h10f;
       data = {$random(seed), $random(seed), $random(seed)};

@@ -1,8 +1,8 @@
-// ray_core with four-state values, at power-up and after resets in mid-run: no bit of its outputs is unknown, and rays hit
-// what they should. Its memory has two nodes and three triangles across the x axis. Every eighth ray meets an edge.
+// Simulates ray_core with four-state values, at power-up and after resets in mid-run. No valid output bit is unknown.
+// Rays have the right hits. Memory has two nodes and three triangles across the x axis. Every eighth ray meets an edge.
 module bench;
   parameter IdWidth = 5;  // bits of a line request's ID
-  parameter Exact = 0;  // of dut
+  parameter Exact = 0;  // parameter Exact of dut
   reg clk = 0, reset_n = 0, ray = 0, result_ready = 0, read_ready = 0, line_valid = 0;
   reg [95:0] origin = 0;
   reg [31:0] skip = 0, source = 0, tag = 0;
@@ -28,24 +28,24 @@ module bench;
     .line_ready_o(line_ready), .line_id_i(line_id), .line_i(line), .line_error_i(1'b0), .events_o(events)
   );
 
-  // A node with a grid of 1/32 from the origin, and its first two children: boxes {high, low}, each of z, y, x.
+  // Returns a node with a grid of 1/32 from the origin. box_0, box_1: first two children, {high, low}, each {z, y, x}.
   function [511:0] node(input [27:0] base, input [7:0] kinds, input [47:0] box_0, input [47:0] box_1);
     node = {240'd0, box_1, box_0, 20'd0, kinds, base, 24'h7a7a7a, 96'd0};
   endfunction
 
-  // Name of the triangle in a line: with Exact the line number, else another index.
+  // Returns the primitive index of the triangle in a line: with Exact the line number, else another number.
   function [31:0] name(input [31:0] line_number);
     name = Exact != 0 ? line_number : line_number + 8;
   endfunction
 
-  // A right-angled triangle: its right angle at (x, from, from), its legs to - from long.
+  // Returns a right-angled triangle at x, with the right angle at (x, from, from) and legs of length to - from.
   function [511:0] across(input [31:0] index, input [31:0] x, input [31:0] from, input [31:0] to);
     across = {192'd0, index, to, from, x, from, to, x, from, from, x};
   endfunction
 
   reg [511:0] lines[0:4];
   reg [28+IdWidth-1:0] asked[0:63];  // {line, id}
-  integer first, last;     // of the requests to be answered
+  integer first, last;     // range of entries of `asked` that are to be answered
 
   task known(input value, input is_known);
     if (value !== 1'b0 && !is_known) failures = failures + 1;

@@ -1,4 +1,4 @@
-// A carry-save adder reduced to step 4: it gives any two words with the sum of the three.
+// Contract of a carry-save adder, proven in step 4: the outputs are any two words with the sum of the three inputs.
 module carry_save_adder #(
   parameter int unsigned Width = 48
 ) (

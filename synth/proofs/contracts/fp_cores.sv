@@ -1,4 +1,4 @@
-// Float cores that give any result and any flags. That is enough for proofs of control.
+// Contracts of the float cores: any result and any flags. Sufficient for proofs about control logic.
 module fp_multiplier #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,

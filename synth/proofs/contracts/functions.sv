@@ -1,8 +1,8 @@
-// The float cores as functions of their operands: it is only known that equal operands give equal results. For proofs
-// of a unit's data flow: which words go through which cores, and where the results go.
+// Contracts of the float cores as uninterpreted functions: only "equal operands give equal results" is known. For
+// proofs about a unit's data flow: which words enter which cores, and where the results go.
 //
-// induction.py makes each X_result the value of the function X at X_operands. Cores have all registers or none, as in
-// the units. A divider with registers gives any result for operands without valid_i.
+// induction.py constrains each X_result to be function X of X_operands. Cores are combinational or fully pipelined, as
+// in the units. The pipelined divider gives an arbitrary result for operands without valid_i.
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

@@ -1,5 +1,5 @@
-// The arithmetic of the pipelined unit, reduced to outputs of any word and any one verdict. That is enough for proofs
-// of control.
+// Contracts of the pipelined unit's arithmetic: arbitrary words, and exactly one of miss, hit and doubt. Sufficient for
+// proofs about control logic.
 module hit_dots #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

@@ -1,4 +1,4 @@
-// A lane whose inputs are visible and whose outputs may be anything.
+// Contract of a lane: the outputs are arbitrary. Wire `given` has all inputs, `said` and `counted` all outputs.
 module hit_test_pipeline #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

@@ -1,4 +1,4 @@
-// A queue that gives each word at once, for the proof that ports are the right parts of words.
+// Contract of a queue with zero latency: each word leaves at once. For proofs that ports carry the right bits of words.
 module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 2,

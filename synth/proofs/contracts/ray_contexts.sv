@@ -1,5 +1,5 @@
-// A ray core reduced to rays that come and go: ray_alloc and ray_retire, joined as in ray_core. The work for a ray is
-// arbitrary, and so is the start of its traversal. One ray may be marked: its tag is one bit here.
+// A ray core reduced to the start and end of rays: ray_alloc and ray_retire, connected as in ray_core. Start and
+// duration of a ray's traversal are arbitrary. The rays' tags are reduced to one bit, which marks a ray.
 module ray_contexts #(
   parameter int unsigned Rays = 4,
   localparam int unsigned CtxWidth = $clog2(Rays)
@@ -15,7 +15,7 @@ module ray_contexts #(
   output logic [CtxWidth-1:0] started_ctx_o,
   output logic                 ending_o,
   output logic [CtxWidth-1:0] ending_ctx_o,
-  output logic [Rays-1:0]      marks_o,      // of contexts
+  output logic [Rays-1:0]      marks_o,      // per context: its ray is the marked ray
   output logic                 entering_o,   // the marked ray's end enters the queue
   input  logic                 doubt_valid_i,
   output logic                 result_valid_o,
@@ -89,7 +89,7 @@ module ray_contexts #(
 
 endmodule
 
-// A queue that keeps only the highest bit of each word: unit.fifo proves that the real queue keeps order.
+// Contract of a queue: keeps only the highest bit of each word. Proof unit.fifo shows that the real queue keeps order.
 module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 64,
@@ -108,7 +108,7 @@ module fifo #(
 );
   (* anyseq *) logic [Width-1:0] any;
   logic [CountWidth-1:0] count_q, count_d, last;
-  logic [Depth-1:0] bits_q, bits;  // the next to leave is lowest; 0 above the last
+  logic [Depth-1:0] bits_q, bits;  // bit 0: the next word to leave; 0 above the last word
   assign data_o  = Width'({bits_q[0], any} >> 1);
   assign last    = count_q - CountWidth'(pop_i);
   assign bits    = pop_i ? bits_q >> 1 : bits_q;

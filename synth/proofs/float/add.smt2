@@ -1,5 +1,5 @@
-; a + b, or a - b with `subtract`: the sum of a and of b with its sign changed. IEEE 754-2019,
-; clauses 5.4.1, 6.3 and 7.
+; Specification of a + b, or with `subtract` of a - b = a + (-b). IEEE 754-2019, clauses 5.4.1,
+; 6.3 and 7.
 
 (define-fun addend ((b Word) (subtract Bool)) Float
   (ite subtract (fp.neg (number b)) (number b)))

@@ -1,4 +1,4 @@
-; a == b, a < b, unordered. IEEE 754-2019, clauses 5.6.1, 5.11 and 7.2.
+; Specification of a == b, a < b and unordered. IEEE 754-2019, clauses 5.6.1, 5.11 and 7.2.
 
 (define-fun is-unordered ((a Word) (b Word)) Bool
   (or (fp.isNaN (number a)) (fp.isNaN (number b))))

@@ -1,5 +1,5 @@
-// Prints COUNT operations with MPFR's results: a line of mode, tininess, operands, result and
-// flags, in decimal. Arguments: exponent width, fraction width, operation (a FloatOp), COUNT.
+// Prints COUNT operations with MPFR's results, one per line: rounding mode, tininess, operands,
+// result and flags, in decimal. Arguments: exponent width, fraction width, FloatOp, COUNT.
 #include <cstdio>
 #include <cstdlib>
 #include <random>
@@ -17,7 +17,7 @@ int main(int, char** argv) {
   PairSource source(format, op, 1);
   std::mt19937 engine(1);
   for (long i = 0; i < count; ++i) {
-    // Every second pair is one of edges.
+    // Every second pair of operands is from `edges`.
     const auto [a, b] = i % 2 == 0 ? edges[engine() % edges.size()] : source.next();
     const auto rounding = static_cast<RoundingMode>(engine() % 5);
     const auto tininess = static_cast<Tininess>(engine() % 2);

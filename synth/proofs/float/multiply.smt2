@@ -1,8 +1,8 @@
-; a * b, given the product of the significands. IEEE 754-2019, clauses 5.4.1 and 7.
+; Specification of a * b, in terms of the product of the significands. IEEE 754-2019, clauses 5.4.1 and 7.
 
 (define-sort Product () (_ BitVec $P))
 
-; A finite number is significand / 2^($S - 1) * 2^(exponent - bias); a subnormal's exponent is 1.
+; A finite number is significand / 2^($S - 1) * 2^(exponent - bias). Subnormal numbers have exponent 1.
 (define-fun field ((w Word)) (_ BitVec $E) ((_ extract $FIELD_HIGH $F) w))
 (define-fun is-normal-field ((w Word)) Bool (not (= (field w) (_ bv0 $E))))
 (define-fun significand ((w Word)) (_ BitVec $S)
@@ -10,8 +10,9 @@
 (define-fun exponent ((w Word)) (_ BitVec $WE)
   ((_ zero_extend $EXTEND) (ite (is-normal-field w) (field w) (_ bv1 $E))))
 
-; The multiplier of significands gives their product. A query that does not multiply knows only this: a significand in
-; [1, 2) scales the other by a factor in [1, 2), and a product is zero only if a factor is.
+; product-of: the product of the significands. Queries without a multiplication assume only possible-product:
+; multiplying by a significand in [1, 2) scales the other one by a factor in [1, 2), and a product is zero only if a
+; factor is zero.
 (define-fun product-of ((a Word) (b Word)) Product
   (bvmul ((_ zero_extend $S) (significand a)) ((_ zero_extend $S) (significand b))))
 (define-fun in-range ((x Word) (y Word) (product Product)) Bool
@@ -23,7 +24,7 @@
        (= (= product (_ bv0 $P))
           (or (= (significand a) (_ bv0 $S)) (= (significand b) (_ bv0 $S))))))
 
-; The exact product of finite numbers. (1 + product / 2^k) * 2^e - 2^e is product * 2^(e - k).
+; The exact product of finite numbers as a Wide. (1 + product / 2^k) * 2^e - 2^e = product * 2^(e - k).
 (define-fun product-magnitude ((a Word) (b Word) (product Product)) Wide
   (let ((e (bvadd (exponent a) (exponent b) (_ bv$PRODUCT_FIELD $WE))))
     (fp.sub RNE (fp #b0 e (concat (_ bv0 $PAD) product)) (fp #b0 e (_ bv0 $WF)))))

@@ -1,14 +1,15 @@
-; bfloat16, a format that the solver does not know: its numbers are held as the binary32 numbers whose upper halves they
-; are, so that no operation of SMT-LIB rounds to it. By clause 4.3 a result is right if its magnitude is the largest
-; that the rounded exact value reaches. To be read after format.smt2.
+; Specification for bfloat16, a format that the solver does not support. A bfloat16 number is represented as a binary32
+; number with a lower half of zeros. No operation of SMT-LIB rounds to bfloat16. Instead, by clause 4.3, a result is
+; right if its magnitude is the largest one that the exact value reaches when rounded. To be read after format.smt2.
 
-; The magnitude k / 2 places after zero, in the order of words of equal sign; after the largest, the next power of two.
+; Place k = 2 n: bfloat16 magnitude number n in ascending order from 0 (n is its word); odd k: the middle between two
+; magnitudes. After the largest finite magnitude comes the next power of two.
 (define-sort Place () (_ BitVec $W))
 (define-fun at ((k Place)) Wide
   (ite (= k $INFINITY_PLACE) $POWER
        ((_ to_fp $WE $WS) RNE ((_ to_fp $E $FS) (concat #b0 k (_ bv0 $NARROW_PAD))))))
 
-; Whether an exact magnitude between `least` and `most`, equal or neighbours, rounds to number k / 2 or more.
+; Whether an exact magnitude between `least` and `most` (equal or neighbouring Wides) rounds to place k (even) or above.
 (define-fun reaches-place ((m RoundingMode) (negative Bool) (least Wide) (most Wide) (k Place)) Bool
   (let ((middle (at (bvsub k (_ bv1 $W)))) (even (= ((_ extract 1 1) k) #b0)))
     (ite (or (= m RNA) (and (= m RNE) even)) (fp.geq least middle)
@@ -26,8 +27,8 @@
                    (or (= k (_ bv0 $W)) (reaches-place m negative least most k))
                    (not (reaches-place m negative least most (bvadd k (_ bv2 $W)))))))))
 
-; The result and flags of an exact value between `below` and `above`, equal or neighbours, which has the sign of `sign`
-; even if it is zero. `special`: the result is `special-result`, not a rounded value.
+; Whether `w` and `flagged` are the right result and flags of an exact value between `below` and `above`, equal or
+; neighbouring Wides. `sign` has the sign of the value, even for zero. `special`: the right result is `special-result`.
 (define-fun right ((w Word) (flagged (_ BitVec 5)) (m RoundingMode) (after Bool)
                    (special Bool) (special-result Float) (sign Wide) (below Wide) (above Wide)
                    (invalid Bool) (by-zero Bool)) Bool

@@ -1,8 +1,8 @@
-"""`solve.py FILE SECONDS [TERM ...]`: Bitwuzla's answer to an SMT-LIB file, as a line of JSON.
+"""`solve.py FILE SECONDS [TERM ...]` prints Bitwuzla's answer to an SMT-LIB file, as a line of JSON.
 
 {"answer": "sat", "unsat", or "unknown" if SECONDS of processor time (0: no limit) are not enough,
-"seconds": of processor time, "megabytes": peak,
-"values": {TERM: its value in bits, if the answer is "sat"}}
+"seconds": processor time, "megabytes": peak memory,
+"values": {TERM: value in bits}, empty unless the answer is "sat"}
 """
 
 import json
@@ -34,7 +34,7 @@ def report(answer: str, values: dict[str, str], usage: resource.struct_rusage) -
 def main() -> None:
     """Solves the file and prints the values of the terms."""
     file, limit, *terms = sys.argv[1:]
-    if float(limit):  # a child may run out of time
+    if float(limit):  # solve in a child process, which may exceed its time limit
         child = os.fork()
         if child:
             status = os.waitpid(child, 0)[1]

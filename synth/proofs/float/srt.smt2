@@ -1,5 +1,5 @@
-; Rows of the radix-4 divider. Residuals and divisors are words of $N bits, two of them integer bits; a residual is the
-; sum of two words, modulo 4, and signed. Here they have four bits more, so that nothing overflows.
+; Specification of the rows of the radix-4 divider. Residuals w and divisors d have $N bits, two of them integer bits.
+; A residual is the signed sum of two words, modulo 4. Sort Exact has four more bits, so that nothing overflows.
 
 (define-sort Residual () (_ BitVec $N))
 (define-sort Exact () (_ BitVec $N4))
@@ -15,7 +15,7 @@
 ; |w| <= 2/3 d
 (define-fun is-remainder ((w Exact) (d Residual)) Bool
   (and (bvsle (thrice w) (twice (unsigned d))) (bvsle (bvneg (twice (unsigned d))) (thrice w))))
-; k d, k of -2 .. 4
+; k d, for k from -2 to 4
 (define-fun times ((k Exact) (d Residual)) Exact
   (ite (= k (_ bv0 $N4)) (_ bv0 $N4)
   (ite (= k (_ bv1 $N4)) (unsigned d)

@@ -1,5 +1,5 @@
-; fp_divider around a divider of significands that may give any possible quotient: the divider gets the normalised
-; significands, and the result for its quotient is right. Every pair of words, every mode.
+; fp_divider, with a divider of significands that returns any possible quotient. The divider's operands are the
+; normalised significands, and the result is right for the returned quotient. For every pair of words and every mode.
 (declare-const wide-a WideWord)
 (declare-const wide-b WideWord)
 (define-fun m () RoundingMode (mode rounding_mode_i))

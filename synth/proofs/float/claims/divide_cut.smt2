@@ -1,5 +1,5 @@
-; fp_divider with QuotientBits: the quotient of significands, in [2, 4) or in [1, 2), keeps that many bits, starting at
-; its leading one. The bits cut off raise no flag; else as in divide.smt2.
+; fp_divider with QuotientBits: the quotient of significands, in [2, 4) or in [1, 2), keeps QuotientBits bits from its
+; leading one on. The bits cut off raise no flag. Otherwise like divide.smt2.
 (declare-const wide-a WideWord)
 (declare-const wide-b WideWord)
 (define-fun m () RoundingMode (mode rounding_mode_i))

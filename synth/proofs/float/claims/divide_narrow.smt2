@@ -1,4 +1,4 @@
-; As divide.smt2.
+; Like divide.smt2, for a format that the solver does not support.
 (declare-const wide-a WideWord)
 (declare-const wide-b WideWord)
 (define-fun m () RoundingMode (mode rounding_mode_i))

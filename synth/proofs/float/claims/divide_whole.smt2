@@ -1,4 +1,4 @@
-; The whole fp_divider. Only for counterexamples: no solver ends with a proof.
+; The whole fp_divider. Useful only to find counterexamples: no solver completes the proof.
 (declare-const wide-a WideWord)
 (declare-const wide-b WideWord)
 (define-fun m () RoundingMode (mode rounding_mode_i))

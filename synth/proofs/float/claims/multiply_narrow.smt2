@@ -1,4 +1,4 @@
-; As multiply.smt2.
+; Like multiply.smt2, for a format that the solver does not support.
 (define-fun m () RoundingMode (mode rounding_mode_i))
 (define-fun x () Wide (exact-product a_i b_i free_product))
 (define-fun assumed () Bool (possible-product a_i b_i free_product))

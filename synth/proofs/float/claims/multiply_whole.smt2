@@ -1,4 +1,4 @@
-; The whole fp_multiplier. Only for counterexamples: no solver ends with a proof.
+; The whole fp_multiplier. Useful only to find counterexamples: no solver completes the proof.
 (define-fun m () RoundingMode (mode rounding_mode_i))
 (define-fun right-result () Float (multiply-result m a_i b_i (product-of a_i b_i)))
 (define-fun right-flags () (_ BitVec 5)

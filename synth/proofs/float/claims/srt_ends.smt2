@@ -1,6 +1,6 @@
-; srt_divider around rows that may do anything that keeps |w| <= 2/3 d: the first row gets 2 x and d, every other row
-; the outputs of the row before it, and d; the quotient is the positive digits minus the negative digits, minus one if w
-; is negative in the end.
+; srt_divider, with rows of which only |w| <= 2/3 d is known (w: residual, x: dividend, d: divisor). The first row's
+; inputs are 2 x and d. The inputs of every other row are the outputs of the row before, and d. The quotient is the
+; positive digits minus the negative digits, minus one if the last residual is negative.
 (define-fun divisor () Residual (concat #b0 divisor_i))
 (define-fun last () Exact (residual free_sum_o_$ROWS free_carry_o_$ROWS))
 (define-fun negative () Bool (bvslt last (_ bv0 $N4)))

@@ -1,4 +1,4 @@
-; srt_first_row makes w = 2 x - digit d, with |w| <= 2/3 d and a digit of 1 .. 4, from 2 x and d.
+; srt_first_row computes the residual w = 2 x - digit d from 2 x and d, with |w| <= 2/3 d and a digit from 1 to 4.
 (define-fun w () Exact (residual sum_o carry_o))
 (define-fun digit () Exact (ite (= digit_o #b00) (_ bv4 $N4) (small digit_o)))
 (define-fun assumed () Bool

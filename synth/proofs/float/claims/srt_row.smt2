@@ -1,5 +1,5 @@
-; srt_row makes w' = 4 w - digit d from |w| <= 2/3 d, and |w'| <= 2/3 d again. The digit is the positive digit minus the
-; negative digit; one of them is 0, and neither is 3.
+; For residuals w with |w| <= 2/3 d, srt_row computes w' = 4 w - digit d, and |w'| <= 2/3 d. The digit is positive_o -
+; negative_o. At least one of positive_o and negative_o is 0, and neither is 3.
 (define-fun w () Exact (residual sum_i carry_i))
 (define-fun next () Exact (residual sum_o carry_o))
 (define-fun digit () Exact (bvsub (small positive_o) (small negative_o)))

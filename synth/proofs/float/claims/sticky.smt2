@@ -1,5 +1,5 @@
-; A remainder may count as half a place: eight more bits of the quotient, or half a place instead, give the same result
-; and flags for every exponent.
+; A nonzero remainder may be replaced by half a unit in the quotient's last place: the quotient with eight more bits,
+; not all 0, has the same result and flags as the quotient with half a unit added. For every exponent.
 (declare-const quotient Quotient)
 (declare-const more (_ BitVec 8))
 (declare-const e (_ BitVec $WE))

@@ -1,4 +1,4 @@
-// A multiplier whose product may be anything: the query defines it.
+// Contract of a multiplier: the product is arbitrary here, and is constrained in the query.
 module multiplier #(
   parameter int unsigned Width = 24,
   parameter int unsigned Arith = 0,

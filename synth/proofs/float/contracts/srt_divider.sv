@@ -1,4 +1,4 @@
-// A divider of significands whose quotient may be anything: the query defines it.
+// Contract of a divider of significands: quotient and remainder are arbitrary here, and are constrained in the query.
 module srt_divider #(
   parameter int unsigned Width = 24,
   parameter int unsigned Rows  = 12,

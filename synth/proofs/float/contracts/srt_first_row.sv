@@ -1,4 +1,4 @@
-// A first row whose outputs may be anything: the query defines them.
+// Contract of a divider's first row: the outputs are arbitrary here, and are constrained in the query.
 module srt_first_row #(
   parameter int unsigned Width = 25
 ) (

@@ -1,4 +1,4 @@
-// A row whose outputs may be anything: the query defines them.
+// Contract of a divider's row: the outputs are arbitrary here, and are constrained in the query.
 module srt_row #(
   parameter int unsigned Width = 25,
   parameter int unsigned Arith = 0

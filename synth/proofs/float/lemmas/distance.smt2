@@ -1,10 +1,9 @@
-; Two steps of hit_test_pkg, "Error of t". z3 must answer "sat" where a question says so, as its assumptions are
-; possible; else "unsat".
-;
-; Real numbers. M = 2^(the largest exponent of N), G = 2^g.
+; Two steps of the derivation "Error of t" in hit_test_pkg. z3 must answer "sat" where a question says so (then its
+; assumptions are possible), else "unsat". All values are real numbers.
 
-; V = I . N in binary32 is off by less than 48.5 u M. n is the magnitude of a word of N, within 1.01 u of the exact one;
-; |I_i| <= 2; x stands for I_i N_i, y for I_i times the error of N_i.
+; Claim: |V - exact product| < 48.5 u M, where V is I . N computed in binary32, u = 2^-24 is the unit roundoff, and M =
+; 2^(largest exponent of a component of N). |I_i| <= 2. n_i: magnitude of the record's word N_i, whose error is at most
+; 1.01 u n_i. x_i = I_i N_i. y_i = I_i times the error of N_i. p_i: x_i, rounded. s: p_1 + p_2, rounded.
 (push)
 (define-fun u () Real (/ 1.0 16777216.0))
 (define-fun within ((x Real) (bound Real)) Bool (and (<= x bound) (<= (- bound) x)))
@@ -28,8 +27,9 @@
 (check-sat)
 (pop)
 
-; (48.5 G + 3.2) / (1 - r), with r = 48.5 u G, is below 2^6 max(G, 1) for rays that do not graze too much: G is at most
-; 1, or, with FracWidth above 11, 2^(FracWidth - 11) = 1 / (4096 u). Any format.
+; Claim, for any format: (48.5 G + 3.2) / (1 - r) < 2^6 max(G, 1), with r = 48.5 u G. Assumed: G <= 1 or, for FracWidth
+; > 11, G <= 2^(FracWidth - 11) = 1 / (4096 u). G = 2^g, with g = largest exponent of N's components minus exponent of
+; V.
 (push)
 (declare-const u Real)
 (declare-const G Real)

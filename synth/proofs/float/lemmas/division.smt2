@@ -1,5 +1,5 @@
-; From the rows to the quotient, in whole numbers of any size. x, d: the significands; p = 4^r; D: the
-; digits up to row r as one number; w: its residual. For z3: "unsat" to each question.
+; From the rows to the quotient, in integers of any size. x, d: the significands; p = 4^r; D: the digits
+; up to row r as one number; w: residual after row r. z3 must answer "unsat" to each question.
 (declare-const x Int)
 (declare-const d Int)
 (declare-const p Int)
@@ -7,15 +7,15 @@
 (declare-const w Int)
 (declare-const digit Int)
 
-; First digit and rows keep 2 x p = D d + w: the first has p = 1 and w = 2 x - D d, and a row goes on
-; to 4 p, 4 D + digit and 4 w - digit d.
+; Every row preserves 2 x p = D d + w. (After the first row, p = 1 and w = 2 x - D d.) A row replaces
+; p by 4 p, D by 4 D + digit, and w by 4 w - digit d.
 (push)
 (assert (= (* 2 x p) (+ (* D d) w)))
 (assert (not (= (* 2 x (* 4 p)) (+ (* (+ (* 4 D) digit) d) (- (* 4 w) (* digit d))))))
 (check-sat)
 (pop)
 
-; In the end D, minus one if w is negative, is 2 x p / d truncated, and there is a remainder if w is not zero.
+; After the last row: Q = D, minus one if w < 0, is 2 x p / d truncated. There is a remainder if and only if w is not 0.
 (push)
 (define-fun Q () Int (ite (< w 0) (- D 1) D))
 (assert (and (> d 0) (<= (* -2 d) (* 3 w)) (<= (* 3 w) (* 2 d))))
@@ -25,7 +25,7 @@
 (check-sat)
 (pop)
 
-; The quotient is in (p, 4 p) if the significands are in [f, 2 f), so two integer bits hold it.
+; The quotient is in (p, 4 p) if the significands are in [f, 2 f), so two integer bits are enough.
 (push)
 (declare-const f Int)
 (assert (and (> f 0) (<= f x) (< x (* 2 f)) (<= f d) (< d (* 2 f)) (> p 0)))

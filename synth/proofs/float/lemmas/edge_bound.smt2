@@ -1,11 +1,11 @@
-; Hit or miss, binary32: an edge product U = I . E beyond its bound has the sign of the exact product. The steps
-; are those of host/intersect/polygon_record.cpp. z3 must answer "sat" where a question says so, as its
-; assumptions are possible; else "unsat".
-;
-; Real numbers. An operation to nearest is off by at most u of its exact result, and by 2^-150 more if
-; a product underflows (a sum does not). f is the magnitude of F_i, a float word, which differs by g
-; from D_i, a double, which differs by h from the exact E_i. |I_i| <= 2; x, y, z stand for I_i F_i,
-; I_i (D_i - F_i), I_i (E_i - D_i), for which only bounds are known: no question multiplies.
+; Claim, in binary32: |U - I . E| <= bound, so U has the sign of I . E if |U| > bound. The steps are those of
+; host/intersect/polygon_record.cpp. z3 must answer "sat" where a question says so (then its assumptions are
+; possible), else "unsat". All values are real numbers.
+;   I: the ray's direction, |I_i| <= 2. E: the exact edge vector. D: E in double. F: D in float, the record's words.
+;   U: I . F as the unit computes it. An operation has an error of at most u = 2^-24 (the unit roundoff) times its
+;   exact result, and of 2^-150 more if a product underflows (sums do not underflow).
+;   f_i = |F_i|, g_i = |D_i - F_i|, h_i = |E_i - D_i|. x_i = I_i F_i, y_i = I_i (D_i - F_i), z_i = I_i (E_i - D_i):
+;   z3 knows only bounds of these products, so the questions are linear.
 (set-logic QF_LRA)
 (define-fun u () Real (/ 1.0 16777216.0))
 (define-fun tiny () Real (/ 1.0 1427247692705959881058285969449495136382746624.0)) ; 2^-150
@@ -20,7 +20,7 @@
 (assert (>= size (/ 1.0 1152921504606846976.0))) ; 2^-60
 (assert (and (<= 0.0 g1 (+ (* u f1) tiny)) (<= 0.0 g2 (+ (* u f2) tiny))
              (<= 0.0 g3 (+ (* u f3) tiny))))
-(define-fun h-most () Real (/ size-in-double 17179869184.0)) ; 2^-34, edge_normal's promise
+(define-fun h-most () Real (/ size-in-double 17179869184.0)) ; 2^-34, guaranteed by edge_normal
 (assert (and (<= 0.0 h1 h-most) (<= 0.0 h2 h-most) (<= 0.0 h3 h-most)))
 
 (declare-const x1 Real) (declare-const x2 Real) (declare-const x3 Real)
@@ -31,7 +31,7 @@
 (assert (and (within z1 (* 2.0 h1)) (within z2 (* 2.0 h2)) (within z3 (* 2.0 h3))))
 (define-fun exact () Real (+ x1 x2 x3 y1 y2 y3 z1 z2 z3))
 
-; The unit's three products and two sums, and their largest magnitudes.
+; The unit's three products p_i, first sum s and second sum U, and their largest magnitudes.
 (declare-const p1 Real) (declare-const p2 Real) (declare-const p3 Real)
 (declare-const s Real) (declare-const U Real)
 (define-fun product-error ((f Real)) Real (+ (* u 2.0 f) tiny))
@@ -43,7 +43,7 @@
              (within (- s (+ p1 p2)) (* u s-exact-most))
              (within (- U (+ s p3)) (* u (+ s-most (product-most f3))))))
 
-; kEdgeBound u |F|_1, with a part in 10^9 to spare for evaluating it.
+; bound = kEdgeBound u (f_1 + f_2 + f_3), less a part of 10^-9 for rounding errors in its evaluation.
 (define-fun bound () Real (* 8.0078125 0.999999999 u size))
 
 (check-sat) ; sat
@@ -53,7 +53,7 @@
 (check-sat)
 (pop)
 
-; So a sure U has the sign of the exact product.
+; If |U| > bound, U has the sign of the exact product.
 (push)
 (assert (or (and (> U bound) (<= exact 0.0)) (and (< U (- bound)) (>= exact 0.0))))
 (check-sat)

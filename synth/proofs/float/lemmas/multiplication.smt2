@@ -1,5 +1,5 @@
-; The assumption of claims/multiply.smt2 about a product, in whole numbers: f = 2^fraction; a and b are significands; in
-; the first question, b's number is normal. z3 must answer "unsat" to each question.
+; The assumption of claims/multiply.smt2 about a product, in integers. a and b are significands, f = 2^(fraction bits).
+; In the first question, b is the significand of a normal number. z3 must answer "unsat" to each question.
 (declare-const a Int)
 (declare-const b Int)
 (declare-const f Int)

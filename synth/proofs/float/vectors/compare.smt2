@@ -1,4 +1,4 @@
-; Whether the specification of comparisons agrees with a vector: `second` is 0 for ==, which is quiet, and 1 for <=.
+; Whether the specification of comparisons agrees with a test vector. `second`: false for == (quiet), true for <=.
 (define-fun agrees ((m RoundingMode) (after Bool) (a Word) (b Word) (result Word)
                     (flags (_ BitVec 5)) (second Bool) (wide-a WideWord) (wide-b WideWord)) Bool
   (and (= (not (= result (_ bv0 $W)))

@@ -1,4 +1,4 @@
-; Whether the specification of quotients, and SMT-LIB's fp.div, agree with a vector.
+; Whether the specification of quotients, and SMT-LIB's fp.div, agree with a test vector.
 (define-fun agrees ((m RoundingMode) (after Bool) (a Word) (b Word) (result Word)
                     (flags (_ BitVec 5)) (second Bool) (wide-a WideWord) (wide-b WideWord)) Bool
   (let ((x (bvshl (concat (_ bv0 $QUOTIENT_SHIFT) (normalized wide-a)) (_ bv$QUOTIENT_SHIFT $QX)))

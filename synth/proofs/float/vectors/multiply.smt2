@@ -1,4 +1,4 @@
-; Whether the specification of products, and SMT-LIB's fp.mul, agree with a vector.
+; Whether the specification of products, and SMT-LIB's fp.mul, agree with a test vector.
 (define-fun agrees ((m RoundingMode) (after Bool) (a Word) (b Word) (result Word)
                     (flags (_ BitVec 5)) (second Bool) (wide-a WideWord) (wide-b WideWord)) Bool
   (let ((product (product-of a b)))

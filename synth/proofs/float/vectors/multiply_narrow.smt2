@@ -1,4 +1,4 @@
-; As multiply.smt2, without an operation that rounds to the format.
+; Like multiply.smt2, for a format that the solver does not support.
 (define-fun agrees ((m RoundingMode) (after Bool) (a Word) (b Word) (result Word)
                     (flags (_ BitVec 5)) (second Bool) (wide-a WideWord) (wide-b WideWord)) Bool
   (let ((product (product-of a b)))
