@@ -1,12 +1,11 @@
 """`python3 -m synth`: see `--help`, or synth/README.md."""
 
 import argparse
-import contextlib
 import pathlib
 import resource
 import sys
 
-from synth import brought, catalogue, chosen, cores, float_peers, grading, measure, prove, report, runner, store, structure, tools
+from synth import catalogue, chosen, cores, float_peers, grading, measure, prove, report, runner, store, structure, tools
 
 
 def arguments() -> argparse.Namespace:
@@ -89,7 +88,7 @@ def main() -> int:
     given = arguments()
     if given.publish and (given.top or not given.all or given.liberty or given.targets):
         raise ValueError("PUBLISH=1: expected the whole report, ALL=1 without TOP, LIBERTY and TARGETS")
-    with brought.in_place(brought.bring({"ADDER": given.adder})) if given.adder.endswith(".sv") else contextlib.nullcontext():
+    with chosen.replaced(given):
         return run(given)
 
 

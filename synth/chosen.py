@@ -1,12 +1,13 @@
 """Reads one design of hw/ from a command line."""
 
 import argparse
+import contextlib
 import pathlib
 import re
 import sys
 from collections.abc import Callable
 
-from synth import catalogue
+from synth import brought, catalogue
 
 
 def whole(least: int, most: int) -> Callable[[str], int]:
@@ -39,6 +40,11 @@ def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
     usage message."""
     parser.print_usage = lambda *_: None
     return parser.parse_args([re.sub("^--[A-Z-]+", lambda name: name[0].lower(), word) for word in sys.argv[1:]])
+
+
+def replaced(given: argparse.Namespace) -> contextlib.AbstractContextManager:
+    """Returns the context in which a user's file, if option --adder names one, replaces the prefix adder. Raises ValueError."""
+    return brought.in_place(brought.bring({"ADDER": given.adder})) if given.adder.endswith(".sv") else contextlib.nullcontext()
 
 
 def design(given: argparse.Namespace) -> catalogue.Design:

@@ -130,9 +130,10 @@ def main() -> int:
     yosys.folder()
     for tool in ("sta", "coloquinte", "qrouter", "magic"):
         tools.find(tool)
-    records, failures = measure(wanted(given), given.jobs)
-    OUT.mkdir(parents=True, exist_ok=True)
-    rows, pictures = table(records), [draw(got) for got in records]
+    with chosen.replaced(given):
+        records, failures = measure(wanted(given), given.jobs)
+        OUT.mkdir(parents=True, exist_ok=True)
+        rows, pictures = table(records), [draw(got) for got in records]
     report = OUT / f"report-{given.top or 'all'}-{given.targets}.md"
     text = tables.markdown(HEADS, rows)
     report.write_text("\n".join(["# Layouts\n", text, *(f"![{name}]({name}.png)\n" for name in pictures)]))

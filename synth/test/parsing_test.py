@@ -161,6 +161,14 @@ class Chosen(unittest.TestCase):
         self.assertEqual(dict(ahead.parameters), dict(reported["adder-graded-look-ahead"].parameters))
         self.assertIn("look_ahead", ahead.name)
 
+    def test_a_file_of_the_user_replaces_the_prefix_adder(self) -> None:
+        given = argparse.Namespace(adder="host/lab/exercises/kogge_stone_adder.sv")
+        with chosen.replaced(given):
+            mine = design("--top=adder", f"--adder={given.adder}")
+            self.assertIn("kogge_stone_adder", "".join(file.read_text() for file in mine.sources()))
+        self.assertEqual(mine.name, "adder-kogge_stone_adder")
+        self.assertNotIn("kogge_stone_adder", "".join(file.read_text() for file in mine.sources()))
+
     def test_groups_of_a_multiplier_are_as_in_the_rtl(self) -> None:
         self.assertNotIn("LookAhead", dict(design("--top=booth_multiplier", "--adder=graded").parameters))
 

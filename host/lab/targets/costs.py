@@ -31,11 +31,14 @@ def design(variant: dict) -> catalogue.Design:
                                                        if value != USUAL[name]})
 
 
-def _measured(folder: str, rows: dict, workers: int) -> list[dict]:
+def measured(folder: str, rows: dict[str, catalogue.Row], workers: int) -> list[dict]:
+    """Returns the results of rows, by design, measured with the user's modules in `folder`, or with hw/'s if it is ""."""
     with brought.in_place(pathlib.Path(folder)) if folder else contextlib.nullcontext():
-        made, failures = synth.records(list(rows.values()), synth.Targets((LIBRARY,), workers))
-    print("\n".join(failures), file=sys.stderr)
-    return [{**record, "brought": folder} for record in made]
+        failures: list[str] = []
+        made = [{**record, "brought": folder} for _, records in synth.measure(list(rows.values()), synth.Targets((LIBRARY,), workers), failures)
+                for record in records]
+    print(*failures, sep="\n", end="\n" * bool(failures), file=sys.stderr)
+    return made
 
 
 def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
@@ -50,7 +53,7 @@ def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
                 designs[variant["brought"]][design(variant).name] = catalogue.Row("variants", design(variant), {LIBRARY: FLOWS[:1]})
         try:
             with concurrent.futures.ProcessPoolExecutor() as pool:  # user-supplied files are chosen per process
-                for made in pool.map(functools.partial(_measured, workers=-(-workers // len(designs))), *zip(*designs.items())):
+                for made in pool.map(functools.partial(measured, workers=-(-workers // len(designs))), *zip(*designs.items())):
                     records = made + records
         except (tools.MissingTool, tools.ToolFailed) as error:
             print(error, file=sys.stderr)

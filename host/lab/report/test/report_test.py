@@ -6,6 +6,7 @@ import unittest
 
 from host.lab.report import document
 from host.lab.targets import bench, core, costs, speed, stress
+from synth import catalogue
 
 VARIANT = {"table": "variants", "variant": "binary32", "unit": "serial", "exponent_bits": 8,
            "digits": 24, "rounding": "nearest-even", "flush": False, "quotient_digits": 0, "fused": False,
@@ -100,6 +101,12 @@ class Costs(unittest.TestCase):
     def test_a_unit_in_its_format(self):
         self.assertEqual(costs.unit(self.UNITS, VARIANT)["area"], 50)
         self.assertEqual(costs.unit(self.UNITS, {**VARIANT, "digits": 16})["area"], 7)
+
+    def test_a_design_is_measured(self):
+        adder = catalogue.design("adder", adder="ripple", Width=3)
+        (found,) = costs.measured("", {adder.name: catalogue.Row("variants", adder, {costs.LIBRARY: ("fast",)})}, 1)
+        self.assertGreater(found["area"], 0)
+        self.assertEqual(found["brought"], "")
 
     def test_unknown_formats_cost_nothing_known(self):
         self.assertIsNone(costs.unit(self.UNITS, {**VARIANT, "digits": 12}))
