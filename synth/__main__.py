@@ -60,6 +60,8 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
         try:
             prove.adds(design)
             print("Proof: it adds, for all operands (SAT).")
+        except tools.Refuted as error:
+            failures.append(brought.in_words("ADDER", "proof that it adds", error.values))
         except tools.ToolFailed as error:
             failures.append(f"proof that it adds: {error}")
     return runner.status(failures)

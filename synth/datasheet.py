@@ -21,7 +21,7 @@ INTRO = """\
 
 Made by `make synth DATASHEET=1` from headers and measurements: OSU 0.35 um, cells alone, default parameters, flow
 `fast` (arith, fp), `parts` (hit_test) or `blocks`. Memories inside a module count in bits. Latency 0 means
-combinational. Where latency or throughput is empty, it depends on memory, the host or other rays.
+combinational. If latency or throughput is empty, the module's header has no such entry.
 """
 
 

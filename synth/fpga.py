@@ -13,11 +13,9 @@ import json
 import pathlib
 import re
 import sys
-from collections.abc import Callable
 
 from synth import catalogue, runner, scripts, store, tables, tools, yosys
 from synth.catalogue import Design, Fpga
-
 
 MOST_PINS = 150  # every package used here has at least this many pins
 
@@ -28,21 +26,15 @@ def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     wanted = store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts,
                        inspect.getsource(registered), inspect.getsource(_map))
-    netlist, mapped = store.cached(folder, wanted, lambda: step("mapping", folder / "yosys.log", lambda: _map(design, fpga, folder)))
+    netlist, mapped = store.cached(folder, wanted, lambda: runner.step("mapping", folder / "yosys.log", lambda: _map(design, fpga, folder)))
     # The key of a kept placement has the netlist's hash: after RTL changes that leave the netlist unchanged, the placement is reused.
     pins = [tools.ROOT / word for word in fpga.arguments if word.endswith(".lpf")]
     wanted = store.key(pins, netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz, inspect.getsource(_place))
     runs = [store.cached(folder / f"seed-{seed}", wanted,
-                         lambda s=seed: step("placing, routing", folder / f"seed-{s}" / "nextpnr.log", lambda: _place(fpga, folder, s)))
+                         lambda s=seed: runner.step("placing, routing", folder / f"seed-{s}" / "nextpnr.log", lambda: _place(fpga, folder, s)))
             for seed in fpga.seeds]
     by_rate = sorted((run for run, _ in runs), key=lambda run: run["mhz"])
     return {**by_rate[len(runs) // 2], "rates": [run["mhz"] for run in by_rate]}, mapped and all(there for _, there in runs)
-
-
-def step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
-    """Prints which step begins and the name of its log file, then returns the result of `work`."""
-    print(f"{what}: {log.relative_to(tools.ROOT)}", file=sys.stderr, flush=True)
-    return work()
 
 
 def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:

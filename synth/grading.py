@@ -54,8 +54,7 @@ def text_of(groups: Grouping) -> str:
 
 def graded(groups: Grouping, look_ahead: bool, width: int = WIDTH) -> Design:
     """Returns a carry-select adder of these groups."""
-    return catalogue.design("adder", adder="graded", widths=list(groups), look_ahead=look_ahead,
-                            Width=width)
+    return catalogue.design("adder", adder="graded", widths=list(groups), look_ahead=look_ahead, Width=width)
 
 
 def model_table() -> str:

@@ -7,6 +7,7 @@ from the netlists (structure.evaluate).
 import argparse
 import collections
 import html
+import itertools
 import pathlib
 import string
 import struct
@@ -136,12 +137,13 @@ def adder_section(kind: str, given: argparse.Namespace) -> str:
     module = structure.without_constants(structure.netlist(design))
     values = evaluate(module, {"a_i": given.a, "b_i": given.b, "carry_i": given.carry})
     drawing = AdderDrawing(module)
-    ports = module["ports"]
-    total = word(ports["sum_o"]["bits"] + ports["carry_o"]["bits"], values)
+    outputs = module["ports"]["sum_o"]["bits"] + module["ports"]["carry_o"]["bits"]
+    select = module["names"].get("gen_select.u_adder.select", [])  # the bits of a group have the same select line
+    widths = ", ".join(str(len([*group])) for _, group in itertools.groupby(select))
     cells = collections.Counter(SYMBOLS.get(cell["type"], cell["type"]) for cell in drawing.cells)
-    slowest = max(drawing.arrival.get(bit, 0.0) for port in ("sum_o", "carry_o") for bit in ports[port]["bits"])
-    return (f"<section><h3>{html.escape(KINDS[kind])}</h3><p>{given.a} + {given.b} + {given.carry} = <b>{total}</b>. "
-            f"Slowest path (bold): {slowest:g} full-adder delays. Cells: "
+    slowest = max(drawing.arrival.get(bit, 0.0) for bit in outputs)
+    return (f"<section><h3>{html.escape(KINDS[kind])}</h3><p>{given.a} + {given.b} + {given.carry} = <b>{word(outputs, values)}</b>. "
+            f"{f'Group widths, lowest first: {widths}. ' if widths else ''}Slowest path (bold): {slowest:g} full-adder delays. Cells: "
             f"{', '.join(f'{count} {name}' for name, count in sorted(cells.items()))}.</p>{drawing.svg(values)}</section>")
 
 
@@ -260,15 +262,15 @@ def binary16(text: str) -> float:
 def main() -> int:
     """Runs the command line."""
     parser = argparse.ArgumentParser(prog="synth.lecture", description="Draws adders with operands in them, as a page.")
-    operand = chosen.whole(0, 2**MOST_BITS - 1)
     parser.add_argument("--width", type=chosen.whole(2, MOST_BITS), default=16, help="bits of the adders (%(default)s)")
     parser.add_argument("--groups", type=chosen.whole_numbers, help="the graded adder's groups, lowest first")
-    parser.add_argument("--a", type=operand, default=1365, help="an operand (%(default)s)")
-    parser.add_argument("--b", type=operand, default=2731, help="the other (%(default)s)")
+    for name, number in (("--a", 1365), ("--b", 2731)):
+        parser.add_argument(name, type=chosen.whole(0, 2**MOST_BITS - 1), help=f"an operand (the lowest WIDTH bits of {number})")
     parser.add_argument("--carry", type=chosen.whole(0, 1), default=0, help="the carry into bit 0 (%(default)s)")
     parser.add_argument("--x", type=binary16, default=1.5, help="a number for the float adder (%(default)s)")
     parser.add_argument("--y", type=binary16, default=-0.3, help="the other (%(default)s)")
     given = chosen.parse(parser)
+    given.a, given.b = (number % 2**given.width if typed is None else typed for typed, number in ((given.a, 1365), (given.b, 2731)))
     if max(given.a, given.b) >> given.width:
         raise ValueError(f"found operands {given.a} and {given.b}, expected numbers of {given.width} bits")
     if given.groups and sum(given.groups) != given.width:

@@ -6,13 +6,12 @@ import json
 import pathlib
 import re
 
-from synth import scripts, store, tools, yosys
+from synth import runner, scripts, store, tools, yosys
 from synth.catalogue import Design, Library
 
 # One step of a path in OpenSTA's report: load, slew, delay, arrival, edge, pin, cell type.
-PATH_STEP = re.compile(
-    r"^\s*(?:[\d.]+\s+)*?(?P<delay>-?[\d.]+)\s+(?P<arrival>-?[\d.]+) "
-    r"[v^] (?P<pin>\S+) \((?P<cell>\w+)\)$", re.M)
+PATH_STEP = re.compile(r"^\s*(?:[\d.]+\s+)*?(?P<delay>-?[\d.]+)\s+(?P<arrival>-?[\d.]+) "
+                       r"[v^] (?P<pin>\S+) \((?P<cell>\w+)\)$", re.M)
 
 
 @functools.cache
@@ -35,13 +34,13 @@ def top_module(file: pathlib.Path) -> dict:
     return module
 
 
-def synthesise(design: Design, library: Library, flow: str,
-               root: pathlib.Path | None = None) -> tuple[dict, bool]:
+def synthesise(design: Design, library: Library, flow: str, root: pathlib.Path | None = None) -> tuple[dict, bool]:
     """Returns area (Liberty units), delay (ns), cells and critical path; and whether this result was cached."""
     folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
     read = [*design.sources(flow == "cells"), library.liberty, *files()]
     wanted = store.key(read, flow_facts(), design.facts, design.clock, library, flow)
-    return store.cached(folder, wanted, lambda: _map_and_time(design, library, flow, folder))
+    work = functools.partial(_map_and_time, design, library, flow, folder)
+    return store.cached(folder, wanted, (lambda: runner.step("mapping, minutes for a core", folder / "yosys.log", work)) if flow == "blocks" else work)
 
 
 def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.Path) -> dict:
@@ -138,7 +137,6 @@ def critical_path(report: str) -> tuple[float, list[dict]]:
         problem = re.search(r"^(?:Error|Warning).*", report, re.M)
         raise tools.ToolFailed(f"no timing path: {problem.group(0) if problem else report[-300:]}")
     setup = re.search(r"^\s*(?:[\d.]+\s+)*?-([\d.]+)\s+[\d.]+\s+library setup time", report, re.M)
-    steps = [{"arrival": float(step["arrival"]), "delay": float(step["delay"]),
-              "pin": step["pin"], "cell": step["cell"]}
+    steps = [{"arrival": float(step["arrival"]), "delay": float(step["delay"]), "pin": step["pin"], "cell": step["cell"]}
              for step in PATH_STEP.finditer(report[: arrival.start()])]
     return round(float(arrival.group(1)) + float(setup.group(1) if setup else 0), 3), steps

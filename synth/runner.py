@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import dataclasses
+import pathlib
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -47,6 +48,12 @@ def run_all(jobs: list[Job], workers: int) -> tuple[list[dict | None], list[str]
     """Returns all results of `run`, and the failures."""
     failures: list[str] = []
     return list(run(jobs, workers, failures)), failures
+
+
+def step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
+    """Prints which step begins and the name of its log file, then returns the result of `work`."""
+    print(f"{what}: {str(log).removeprefix(f'{tools.ROOT}/')}", file=sys.stderr, flush=True)
+    return work()
 
 
 def status(failures: list[str]) -> int:

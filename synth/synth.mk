@@ -1,5 +1,5 @@
-# Area, time, proofs: see synth/README.md.
-SYNTH_JOBS ?= 2
+# Area, time, proofs: see synth/README.md. Two jobs run at once unless JOBS is set: a core takes a gigabyte.
+SYNTH_JOBS ?= $(if $(filter file,$(origin JOBS)),2,$(JOBS))
 
 .PHONY: synth prove fpga lecture layout
 

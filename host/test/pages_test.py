@@ -113,6 +113,10 @@ class Pages(unittest.TestCase):
                               ("synth TOP=adder VERILOG=1", "PARAMS"), ("test LONG=mutate", "COUNT"), ("test LONG=fuzz", "FUZZ_SECONDS"), ("test", "LONG")):
             self.assertEqual(recipe(" ".join([target, *(f"{name}=" for name in names.split())])), recipe(target), target)
 
+    def test_jobs_of_synth(self) -> None:
+        for words, jobs in (("", 2), ("JOBS=1", 1), ("JOBS=1 SYNTH_JOBS=3", 3)):
+            self.assertRegex(recipe(f"synth {words}"), f"--jobs {jobs}\n?$")
+
 
 if __name__ == "__main__":
     unittest.main()

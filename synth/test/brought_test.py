@@ -9,7 +9,7 @@ import tempfile
 import unittest
 import unittest.mock
 
-from synth import brought, catalogue, store
+from synth import __main__ as program, brought, catalogue, measure, store
 
 EXERCISES = catalogue.HW.parent / "host" / "lab" / "exercises"
 PORTS = """(
@@ -101,6 +101,14 @@ class Brought(unittest.TestCase):
                          "carry out = [01]$")
         a, b, carry, says, _, right, _ = map(int, re.findall(r"= (\d+)", found))
         self.assertEqual((right, says), ((a + b + carry) % 128, right ^ 8))
+
+    def test_a_refuted_adder_alone(self) -> None:
+        """`make synth TOP=adder ADDER=FILE` describes the counterexample in the same words."""
+        told, words = io.StringIO(), ["synth", "--top", "adder", "--adder", self.file(HEAD + FORGETS), "--width", "7"]
+        with (contextlib.redirect_stderr(told), contextlib.redirect_stdout(io.StringIO()), unittest.mock.patch.object(sys, "argv", words),
+              unittest.mock.patch.object(measure, "measure", return_value=[])):
+            self.assertEqual(program.main(), 1)
+        self.assertRegex(told.getvalue(), r"^failed: proof that it adds: refuted by a = \d+ .*: it says sum = \d+ .*; right is sum = \d+ .*\n$")
 
     def test_the_exercises(self) -> None:
         rows = self.judged(ADDER=str(EXERCISES / "kogge_stone_adder.sv"))

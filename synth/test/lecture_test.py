@@ -1,15 +1,20 @@
 """Tests values of netlists against Python's arithmetic, and the page that shows these values."""
 
 import argparse
+import contextlib
 import html.parser
+import io
+import pathlib
 import random
 import re
 import struct
 import subprocess
 import sys
+import tempfile
 import unittest
+from unittest import mock
 
-from synth import catalogue, lecture, structure, tools
+from synth import catalogue, lecture, store, structure, tools
 
 
 def given(**changed: object) -> argparse.Namespace:
@@ -53,6 +58,13 @@ class Page(unittest.TestCase):
         self.assertEqual(ripple.count(">FA<"), 8)
         self.assertEqual(ripple.count("cell slow"), 8)
         self.assertIn("8 full-adder delays", ripple)
+        self.assertEqual(re.findall(r"Group widths, lowest first: ([\d, ]*)\. Slowest", lecture.page(given(groups=[1, 2, 1, 4]))), ["4, 4", "1, 2, 1, 4"])
+
+    def test_default_operands_fit(self) -> None:
+        with (tempfile.TemporaryDirectory() as folder, mock.patch.object(store, "OUT", pathlib.Path(folder)),
+              mock.patch.object(sys, "argv", ["lecture", "--width", "8", "--b", "7"]), contextlib.redirect_stdout(io.StringIO())):
+            self.assertEqual(lecture.main(), 0)
+            self.assertIn("85 + 7 + 0 = <b>92</b>", (store.OUT / "lecture.html").read_text())
 
     def test_has_a_name_for_every_word_of_the_near_path(self) -> None:
         self.assertIn("near_difference", lecture.page(given(x=1.0, y=-0.99)))

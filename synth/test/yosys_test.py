@@ -87,12 +87,13 @@ class Memories(unittest.TestCase):
 
     def check(self, design: catalogue.Design, depth: int, width: int, address: int, enables: int) -> None:
         """Checks that a memory's ports become the design's ports: every bit of data and address, and one enable per part of a word."""
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()) as said:
             root = pathlib.Path(folder)
             found, _ = mapping.synthesise(design, catalogue.library("osu035"), "blocks", root)
             (netlist,) = root.glob("*/netlist.json")
             ports = mapping.top_module(netlist)["ports"]
         bits = collections.Counter(re.sub(r"[.[].*", "", name.rpartition("words.")[2]) for name in ports if "words." in name)
+        self.assertRegex(said.getvalue(), f"^mapping, minutes for a core: {folder}/.*/yosys.log\n$")
         self.assertEqual(found["blocks"]["the rest"]["bits"], width * depth)
         self.assertEqual([bits[port] for port in ("read_data_o", "write_data_i", "read_address_i", "write_enable_i")],
                          [width, width, address, enables])
