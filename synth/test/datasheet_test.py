@@ -59,7 +59,7 @@ module m;
         self.assertIn("(modules.md)", text)
         for core in cores.names():
             has_page = (cores.HW / core / "README.md").exists()
-            self.assertIn(f"| [{core}]({core}/README.md) |" if has_page else f"| {core} |", text)
+            self.assertIn(f"|[{core}]({core}/README.md)|" if has_page else f"|{core}|", text)
 
 
 class Registers(unittest.TestCase):
