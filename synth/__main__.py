@@ -5,7 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import catalogue, chosen, cores, float_peers, grading, measure, prove, report, runner, store, structure, tools
+from synth import brought, catalogue, chosen, cores, float_peers, grading, measure, prove, report, runner, store, structure, tools
 
 
 def arguments() -> argparse.Namespace:

@@ -25,7 +25,7 @@ class Board(catalogue.Design):
 
 
 BOARDS = [Board("ulx3s", "ulx3s", "board", clock="clk_25mhz", holds="small_core", device=dataclasses.replace(
-    catalogue.ECP5_LUT4S, clock="clk", wanted_mhz=60, arguments=(
+    catalogue.ECP5_LUT4S, clock="clk", arguments=(
         "--85k", "--package", "CABGA381", "--speed", "6", "--lpf", "synth/boards/ulx3s.lpf", "--router", "router2")))]
 
 

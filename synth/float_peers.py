@@ -144,8 +144,7 @@ def run(libraries: list[catalogue.Library]) -> int:
     for whose, operation, wrapper, does, what, stages in CORES:
         clock = "" if stages == 0 else "clk_i"
         design = PeerDesign(f"float-peers-{wrapper}" + ("" if does is None else f"-{operation}"), wrapper, "fp",
-                            () if does is None else (("Does", str(does)),), clock, () if clock else (("clk_i", "1'b0"), ("rst_ni", "1'b1")),
-                            (*sources(wrapper), wrapped(wrapper)))
+                            () if does is None else (("Does", str(does)),), clock, (*sources(wrapper), wrapped(wrapper)))
         simulated = simulate(design, operation) if operation in OPERATIONS else {}
         differences += simulated.get("differences", 0)
         for library in libraries:
