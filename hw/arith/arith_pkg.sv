@@ -32,12 +32,12 @@ package arith_pkg;
     end
   endfunction
 
-  // Returns graded groups: each group is one bit wider than the group below it. So the carry into a group arrives just
-  // when the group's two sums are ready, if a full adder and a multiplexer have a delay of one each. The top group has
-  // d bits, where d is the adder's delay: the least d for which groups of 1, 1, 2, 3 ... d bits have `width` bits or
-  // more. From the top down, groups have d, d - 1 ... bits; the lowest group has the rest, once that is no wider than
-  // the group above. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the paper's 10 full-adder delays. Valid up to 121 bits; beyond
-  // that, MaxGroups can be too few, and carry_select_adder refuses the list.
+  // Returns graded groups: each group, but for the lowest two, is one bit wider than the group below it. So a group's
+  // carry in arrives just when its two sums are ready, if a full adder and a multiplexer have a delay of one each. The
+  // top group has d bits, where d is the adder's delay: the least d for which groups of 1, 1, 2, 3 ... d bits have
+  // `width` bits or more. From the top down, groups have d, d - 1 ... bits; the lowest has the rest, once that is no
+  // wider than the group above. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the paper's 10 full-adder delays. Valid up to 121
+  // bits; beyond that, MaxGroups can be too few, and carry_select_adder refuses the list.
   function automatic bit [8*MaxGroups-1:0] graded_groups(int unsigned width);
     int unsigned size, left;
     size = 1;

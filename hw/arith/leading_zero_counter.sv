@@ -1,8 +1,7 @@
 // Counts the zeros above the highest 1 of a word.
 //
-// Setting all bits below the highest 1 turns the word into a run of ones; its top marks the highest 1. If that is bit
-// p, the count is Width - 1 - p. So bit j of count_o is the OR of the marks of all p with a 1 in bit j of Width - 1 -
-// p.
+// Setting all bits below the highest 1 turns the word into a run of ones; its top, bit p, marks the highest 1. The
+// count is Width - 1 - p. So bit j of count_o is the OR of the marks of all p with a 1 in bit j of Width - 1 - p.
 //
 // Combinational: $clog2(Width) levels, one AND, one OR of half the bits. If a_i is 0, zero_o is 1, count_o all ones.
 module leading_zero_counter #(

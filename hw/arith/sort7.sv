@@ -9,7 +9,7 @@ module sort7 #(
   output logic [7*Width-1:0] sorted_o
 );
 
-  // In each step, octal digit n is the word compared with word n, or n itself if none. Leftmost: step 5, word 6.
+  // In each step, octal digit n is the index of the word that word n is compared with (n: none). Top: step 5, word 6.
   localparam logic [6*21-1:0] Partners = {
     21'o5634120, 21'o6452310, 21'o4563120, 21'o6234501, 21'o3516042, 21'o0452316
   };

@@ -61,9 +61,9 @@ package exact_pkg;
 
   // ---- Number of digits that a range of exponents needs
   //
-  // With e its exponent field (1 for subnormals), a float is a whole number of significand_width bits in units of 2**(e
-  // - Bias - FracWidth). Let the smallest exponent give the unit, and let the largest be `spread` above it. The
-  // difference of two such numbers is below 2**(spread + significand_width + 1); as many digits as returned hold it.
+  // With e its exponent field (1 for subnormals), a float is a whole number of significand_width bits in units of
+  // 2**(e-Bias-FracWidth). Let the smallest exponent give the unit, and the largest be `spread` above it. A difference
+  // of two such numbers is below 2**(spread + significand_width + 1); digits_of returns enough digits for it.
 
   function automatic int unsigned digits_of(int unsigned spread, int unsigned significand_width,
                                             int unsigned width);

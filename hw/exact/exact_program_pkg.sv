@@ -4,7 +4,7 @@
 // before its last product has passed the pipeline (sim/checks/exact_checks.sv checks this). So instructions for
 // independent vectors alternate, or an instruction has a fence: it waits until all earlier results are written.
 //
-// Programs: Hit decides a hit; Limit and Order compare it. For a request that asks for both, one of them follows Hit.
+// Programs: Hit decides whether the ray hits; Limit and Order compare the hit's t. One of these two can follow Hit.
 package exact_program_pkg;
 
   // Programs are indexed from left to right; no top module uses everything.

@@ -4,7 +4,7 @@
 // corners. A, B, C are the corners minus the origin, I is the direction and N = (B - A) x (C - A):
 //
 //   hit    A . (B x C) is not 0; I . (B x C), I . (C x A), I . (A x B) have its sign. If one of these, I . M, is 0, the
-//          sign of M's first non-zero component counts (as for I tilted towards +x, less to +y, still less to +z)
+//          sign of M's first non-zero component counts (as if I were tilted towards +x, less to +y, least to +z)
 //   order  the sign of t - limit or t - t'. For hits, t = D / S > 0 with D = A . N and S = I . N, and t' = D' / S' (or
 //          limit / 1). So the order is the sign of (D S' - D' S) D D'
 //
@@ -92,7 +92,7 @@ module exact_unit
     .pair_digits_o        (pair_digits)
   );
 
-  // ---- Issue
+  // ---- Issue: the sequencer's steps
 
   typedef struct packed {
     step_t step;

@@ -33,8 +33,8 @@ module fp_divider #(
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
   localparam int unsigned CountWidth = $clog2(FracWidth + 1);
   localparam int unsigned RoundExpWidth = ExpWidth + 2;  // exponent_i of fp_round
-  // Fraction bits of the doubled quotient, which is in (1, 4); a row gives two. Below 2, where most are needed, these
-  // are the significand's fraction and a guard bit or, with QuotientBits, all kept bits but the leading one.
+  // Fraction bits of the doubled quotient, which is in (1, 4); a row gives two. A quotient below 2 needs most: the bits
+  // of the significand's fraction and a guard bit or, with QuotientBits, all kept bits but the leading one.
   localparam int unsigned QuotientFrac = (QuotientBits == 0) ? FracWidth + 1 : QuotientBits - 1;
   localparam int unsigned Rows = (QuotientFrac + 1) / 2;
   localparam int unsigned QuotientWidth = 2 * Rows + 2;
@@ -76,8 +76,8 @@ module fp_divider #(
     assign norm[n] = sig[n] << count[n];
   end
 
-  // ---- Exponent for fp_round: (a_exp - a_count) - (b_exp - b_count) + bias - 2. It is two less than the exponent of a
-  // / b: one for the doubled quotient, one because fp_round expects the exponent less one
+  // ---- Exponent for fp_round: (a_exp - a_count) - (b_exp - b_count) + bias - 2. The -2: one because the quotient is
+  // doubled, one because fp_round expects the exponent less one
 
   localparam logic [RoundExpWidth-1:0] Offset = RoundExpWidth'(2 ** (ExpWidth - 1) - 3);
   logic [RoundExpWidth-1:0] a_exp_offset, exp_difference, count_difference;
@@ -115,7 +115,7 @@ module fp_divider #(
     .carry_o()
   );
 
-  // ---- Specials
+  // ---- Special results
 
   fp_pkg::special_t special;
 
@@ -190,7 +190,7 @@ module fp_divider #(
     .valid_o(divided)
   );
 
-  // ---- Align the quotient for fp_round. QuotientBits are counted from its leading one, one bit lower if it is below 2
+  // ---- Align the quotient for fp_round. With QuotientBits, keep that many bits, from the leading one downwards
 
   logic [RoundSigWidth-1:0] significand;
 

@@ -68,7 +68,7 @@ module fp_multiplier #(
   assign exp_negative = exp_sum[ExpWidth:ExpWidth-1] == 2'b00;
   assign exp = exp_sum ^ {~exp_sum[ExpWidth-1], 1'b1, {(ExpWidth - 1) {1'b0}}};
 
-  // ---- Specials
+  // ---- Special results
 
   fp_pkg::special_t special;
 

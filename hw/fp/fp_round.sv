@@ -61,7 +61,7 @@ module fp_round #(
   assign base = exponent_i[FieldWidth-1:0] & {FieldWidth{~negative}};
 
   if (SubnormalShift) begin : gen_shift
-    // Shift by -exponent_i = ~exponent_i + 1: ~exponent_i places, and one because bit 0 is left out (sticky below)
+    // Shift by -exponent_i = ~exponent_i + 1: ~exponent_i places, and one more by leaving out the significand's bit 0
     logic [SigWidth-2:0] shifted;
     logic lost;
 
@@ -112,8 +112,8 @@ module fp_round #(
   // Computed in parallel with the increment
   assign overflow = (field >= InfField) | ((field == InfField - 1'b1) & (&fraction) & increment);
 
-  // ---- Tininess: before rounding, a value is tiny if its integer bits are 00. After rounding, it must also not round
-  // up to 1 with unbounded exponent, so one bit further down: all bits to the guard bit are 1 and are incremented
+  // ---- Tininess: before rounding, a value is tiny if its integer bits are 00. After rounding, it is not tiny if it
+  // rounds up to 1 with one bit more (unbounded exponent): if all bits down to the guard bit are 1, and are incremented
 
   logic tiny, increment_below;
   assign increment_below = (nearest & placed[1]) | (away & |placed[1:0]);

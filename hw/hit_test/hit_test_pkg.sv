@@ -29,7 +29,8 @@ package hit_test_pkg;
   // at most 4.04 u * 2 (|N_x| + |N_y| + |N_z|) < 48.5 u 2**e(N). Relative to V: at most r = 48.5 u 2**g.
   // Error of t: d adds a relative error below 2 u, the division u. Floats near t are at least u t apart. So at most
   // (48.5 * 2**g + 3.2) / (1 - r) of them lie between t and the exact t. This is below 2**(6 + max(g, 0)) while r <=
-  // 0.19, so for g up to max_grazing, if FracWidth >= 7. (With a larger g, the ray grazes the plane: a doubt.)
+  // 0.19. That holds for all g up to max_grazing, if FracWidth >= 7. (With a larger g, the ray grazes the plane, and
+  // the test is a doubt.)
   // This holds for RoundNearestEven; the other modes have twice the error.
   localparam int unsigned TErrorUnit = 6;
   localparam int unsigned TErrorWidth = 4;

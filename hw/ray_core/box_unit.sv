@@ -35,7 +35,7 @@
 //     replaced by a ray whose s_k is the cap, which moves a quarter of a cell. The two rays are less than a quarter of
 //     a cell apart, so t changes by less than a quarter of the new s_k, 2**E. This is added to r_k.
 //  4. |a_k| is limited to 2**(E + 11). As 255 s_k is less than 2**(E + 10), all planes are then beyond 2**E, or all
-//     behind the ray; so they are without the limit. If binary32 overflows on an axis, the axis excludes no box.
+//     behind the ray, as they are without the limit. If binary32 overflows on an axis, the axis excludes no box.
 //  5. So no near plane is computed too far, and no far plane too near: the box is entered.
 //
 // Source: quantised boxes: Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through

@@ -6,8 +6,8 @@
 // A test without a sure verdict is a doubt, too. Distances are positive floats, which compare as integers. At first,
 // t_max is the user's; a hit that may lie beyond it is a doubt. A ray with any_hit ends with its first certain hit.
 //
-// There are Queue credits. A test takes one at test_i; it is returned at its end or, if a doubt arises, when the doubt
-// leaves. tests_allowed_o is low while none is free. So no test and no line from memory waits for a doubt to leave.
+// There are Queue credits. A test takes one at test_i, and returns it when it ends; if it leaves a doubt, when the
+// doubt leaves. tests_allowed_o is low while no credit is free. So no test and no line from memory waits for doubts.
 //
 // With Exact, no doubt leaves the core: open_o passes each to exact_resolver in the clock in which it arises. If a
 // doubt turns out to be the ray's nearest hit, its triangle is tested again with settle_i, as the ray's last test. This
@@ -95,7 +95,7 @@ module closest_hit
   assign exact_o.line        = AddressWidth'(nearest_triangle[exact_ray_i]);
   assign exact_o.t_max       = t_max[exact_ray_i];
 
-  // ---- Read: the result, and the nearest so far
+  // ---- Read: the result, and the ray's nearest hit so far
 
   logic good, is_over_q, is_sure_q, is_vague_q, replace, forward, old_found_q, settled_q;
   logic [RayWidth-1:0] ray_q;
@@ -250,7 +250,7 @@ module closest_hit
     if (is_over_q && !same) counts[ray_q] <= counts[ray_q] - 1'b1;
   end
 
-  // ---- The end
+  // ---- The nearest hit, for a ray that ends
 
   assign end_o.found    = found_q[end_ray_i];
   assign end_o.triangle = nearest_triangle[end_ray_i];

@@ -111,7 +111,7 @@ module csr
   assign rewind_o     = command & commands[CommandRewind];
   assign clear        = command & commands[CommandClear];
 
-  // ---- Plain registers
+  // ---- Plain registers: hold what was written, in the bits of PlainBits
 
   logic [31:0][31:0] words;  // by word number
 

@@ -7,7 +7,7 @@
 //   settling  When nothing else is left to do for the ray: is the candidate nearer than closest_hit's certain hit or,
 //             without such a hit, than the user's t_max? If so, its triangle is tested once more, for t and P.
 //
-// Of hits at the same t, that of the triangle line of lower rank is nearer. Latency: exact_unit's plus 8 clocks (a
+// Of hits at the same t, the hit on the triangle of lower rank is nearer. Latency: exact_unit's plus 8 clocks (a
 // question, without its one or two reads of the triangle cache). A ray has one question at a time; Units exact_units
 // share the rays' questions. Doubts of an ended ray are dropped.
 //
@@ -216,8 +216,8 @@ module exact_resolver
       is_hit_q   <= settle | queued_hit;
       line_q     <= settle ? candidates[ready_ctx] : queued_line;
     end
-    // In StateAnswer, nearer_q = 0 ends the question after a line with an error, and after the request of a candidate's
-    // test. So line_i.error, which comes late in a clock, decides only state_q in that clock.
+    // nearer_q = 0 makes StateAnswer end the question, after a line with an error and after the request of a
+    // candidate's test. So line_i.error, which comes late in a clock, decides only state_q in that clock.
     if (state_q == StateWait || state_q == StateTest) nearer_q <= 1'b0;
     if (state_q == StateLook) begin
       ended_q      <= known_i.ended;
@@ -228,7 +228,7 @@ module exact_resolver
       against_q <= against;
       lacks_q   <= against == exact_pkg::AgainstOther;  // the other triangle's line is read first
     end
-    // The cache's outputs come too late in a clock to enable so many registers: corners_q is loaded in every StateWait.
+    // The cache's outputs come too late to enable so many registers: StateWait loads corners_q in each clock.
     if (state_q == StateFetch) {other_q, other_rank_q} <= {corners_q, rank_q};
     if (state_q == StateWait) begin
       corners_q <= line_i.line[TriangleCorners+:CornersWidth];

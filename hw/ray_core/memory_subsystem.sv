@@ -7,7 +7,7 @@
 // of prefetches is full. Its line may come after the last ray has ended: while outstanding_o is high, memory must not
 // change and the caches must not be emptied.
 //
-// Lines leave when step_o is high: one of every Clocks clocks. line_ready_o never waits for a result to be taken.
+// Lines leave when step_o is high, in one of every Clocks clocks. line_ready_o never waits for results to be taken.
 module memory_subsystem
   import ray_core_pkg::*;
 #(

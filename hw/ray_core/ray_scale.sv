@@ -1,6 +1,6 @@
-// Scale of a ray in a node: 2**E, a bound of t there, and caps of 1 / I_k that limit the distance of planes. Latency: 2
-// clocks: registers after the bound of t of each axis and after E. All inputs come in the same clock. Steps 1 and 3 of
-// the proof in box_unit's header derive the formulas. Exponents have binary32's bias.
+// Scale of a ray in a node: 2**E, a bound of t there, and caps of 1 / I_k that limit the distance between planes.
+// Latency: 2 clocks: registers after the bound of t of each axis and after E. All inputs come in the same clock. Steps
+// 1 and 3 of the proof in box_unit's header derive the formulas. Exponents have binary32's bias.
 //
 // In:  distances_i  exponents of D_k = origin_k - O_k, eight bits per axis, x lowest
 //      inverse_i    1 / I_k, binary32, x lowest

@@ -12,7 +12,7 @@ package set_up_pkg;
 
   localparam int unsigned PlaneErrorWidth = 4;
 
-  // The most normal_error and distance_error of a usable plane, and the most t_error + normal_error of a usable hit.
+  // Largest normal_error and distance_error of a usable plane, and largest t_error + normal_error of a usable hit.
   localparam int unsigned MostPlaneError = 14;
 
   // For a hit with is_good_hit, fewer than 2**t_error_exponent binary32 numbers lie between its t and the exact t.

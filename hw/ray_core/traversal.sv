@@ -8,8 +8,8 @@
 // Each ray has Depth groups of its own. Levels - Depth more groups are shared: one ray at a time holds them, on top of
 // its own. A ray takes them when it requests a node and its own stack stays full; overflow_o is high in that clock. It
 // holds them until its own stack has room again. Other rays that need them wait. The holder waits for no other ray, so
-// each ray gets its turn. Of shared groups, only the topmost is examined. It is not dropped for t_max, which costs
-// little: box_unit finds no child within t_max.
+// each ray gets its turn. Of shared groups, only the topmost is examined. It is not dropped for t_max: if its children
+// lie beyond t_max, box_unit finds none of their children.
 //
 // In a tree a ray enters each node once, and has at most one group for each level. A ray that is about to enter more
 // than lines_i nodes, or that has Levels groups, is in a cycle: its stack is dropped, and cycle_o is high.
@@ -75,7 +75,7 @@ module traversal
 
   assign traversing_o = busy_q | waiting_q;
 
-  // Return the address of a ray's group of level `level`: in u_groups; in shared_masks, if it is a shared group.
+  // Return addresses of a ray's group of level `level`: in u_groups and, if the group is shared, in shared_masks.
   function automatic logic [StackWidth-1:0] stack_address(logic [RayWidth-1:0] ctx,
                                                           logic [LevelWidth-1:0] level);
     stack_address = StackWidth'(level) + ((level < LevelWidth'(Depth))
@@ -132,7 +132,7 @@ module traversal
     end
   end
 
-  // ---- Read: for each level of the stack, the waiting entries of the group and the `enter` of the nearest
+  // ---- Read: for each group of the picked ray, the entries that wait and the `enter` of the nearest of these
 
   logic push, asked_q, choosing_q, ended_q, next_valid_q;
   logic [LevelWidth-1:0] box_level, level_q, chosen, left, asked_level_q, next_level_q;
