@@ -1,8 +1,8 @@
 // Adder of a chosen kind: {carry_o, sum_o} = a_i + b_i + carry_i. Combinational.
 //
 // Every addition of significands or exponents uses this module. Arith selects the kind of adder: see arith_pkg.
-// GroupWidths: group widths of a carry-select adder, a list as in arith_pkg; other kinds ignore it. 0 selects one group
-// if LookAhead (see carry_select_adder) is 1 and Width is at most 12, as for exponents, else the groups of Arith.
+// GroupWidths and LookAhead configure carry-select adders: see carry_select_adder. Other kinds ignore them. A 0 for
+// GroupWidths selects the groups of kind Arith or, with LookAhead and at most 12 bits (an exponent), one group.
 module adder #(
   parameter int unsigned Width = 48,
   parameter int unsigned Arith = arith_pkg::Graded,

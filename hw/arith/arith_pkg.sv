@@ -18,9 +18,9 @@ package arith_pkg;
 
   localparam int unsigned MaxGroups = 16;
 
-  // Returns groups of 4 bits, with a narrower one on top if 4 does not divide `width`. If that needs more than
-  // MaxGroups groups, all groups are wider. At 48 bits: 12 groups, the 14 full-adder delays of the paper (4 full
-  // adders, then 10 multiplexers to the carry that selects the last group's sums).
+  // Returns groups of 4 bits; the top group is narrower if 4 does not divide `width`. If that takes more than MaxGroups
+  // groups, all groups are as wide as needed. At 48 bits: 12 groups and the paper's 14 full-adder delays (4 full
+  // adders, then 10 multiplexers of the carry that selects the top group's sum).
   function automatic bit [8*MaxGroups-1:0] uniform_groups(int unsigned width);
     int unsigned size, left;
     size = (width <= 4 * MaxGroups) ? 4 : (width + MaxGroups - 1) / MaxGroups;
@@ -32,12 +32,12 @@ package arith_pkg;
     end
   endfunction
 
-  // Returns graded groups: the carry reaches each group just when the group's own two sums are ready, if a full adder
-  // and a multiplexer have a delay of one each. Each group is one bit wider than the group below it. The top group has
-  // as many bits as the adder has delays: the least d for which groups of 1, 1, 2 ... d bits have `width` bits or more.
-  // From the top down, groups take d, d - 1 ... bits, until the rest fits into one more group no wider than the last.
-  // At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays of the paper. Valid up to 121 bits; beyond that,
-  // MaxGroups can be too few, and carry_select_adder refuses the list.
+  // Returns graded groups: each group, but for the lowest two, is one bit wider than the group below it. So a group's
+  // carry in arrives just when its two sums are ready, if a full adder and a multiplexer have a delay of one each. The
+  // top group has d bits, where d is the adder's delay: the least d for which groups of 1, 1, 2, 3 ... d bits have
+  // `width` bits or more. From the top down, groups have d, d - 1 ... bits; the lowest has the rest, once that is no
+  // wider than the group above. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the paper's 10 full-adder delays. Valid up to 121
+  // bits; beyond that, MaxGroups can be too few, and carry_select_adder refuses the list.
   function automatic bit [8*MaxGroups-1:0] graded_groups(int unsigned width);
     int unsigned size, left;
     size = 1;
@@ -68,7 +68,7 @@ package arith_pkg;
     end
   endfunction
 
-  // Returns the index of the lowest bit of group k; for k = MaxGroups, the number of bits of all groups.
+  // Returns the index of the lowest bit of group k or, for k = MaxGroups, the number of bits of all groups together.
   function automatic int unsigned group_low(bit [8*MaxGroups-1:0] widths, int unsigned k);
     group_low = 0;
     for (int unsigned i = 0; i < MaxGroups; i++) begin

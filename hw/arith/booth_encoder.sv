@@ -1,9 +1,9 @@
 // Radix-4 Booth recoding of an unsigned number, all digits at once.
 //
 // b_i is the sum of digit[k] * 4**k, with digit[k] = -2 b[2k+1] + b[2k] + b[2k-1] in -2 .. 2. Bits of b below 0 and
-// above its top count as 0, so the last digit is never negative. Bit 2k of each output describes digit k. one_o: the
-// digit is 1 or -1. two_o: it is 2 or -2. negative_o: b[2k+1], which is 1 for a negative digit and for the 0 of bits
-// 111. Odd bits are 0. There are Width / 2 + 1 digits, 13 for 24 bits. Combinational.
+// above its top count as 0, so the last digit is never negative. There are Width / 2 + 1 digits, 13 for 24 bits. Bit 2k
+// of each output describes digit k; odd bits are 0. one_o: the digit is 1 or -1. two_o: it is 2 or -2. negative_o:
+// b[2k+1], which is 1 for a negative digit, and also for digit 0 if its three bits of b are 111. Combinational.
 // Source: O. L. MacSorley, "High-speed arithmetic in binary computers", Proc. IRE 49, 1961.
 module booth_encoder #(
   parameter  int unsigned Width  = 24,

@@ -69,8 +69,8 @@ module booth_multiplier #(
         assign rows[2*Width*(k+1)+:2*Width] = (2 * Width)'(row) << 2 * k;
       end
     end else begin : gen_full
-      // n fits below the last row, and ~n above row 0, except ~n[2]: from bit Width + 1, the constant 1 and ~n[1:0] add
-      // up to 4 - n[0], which has three bits, so ~n[2] moves to row 1.
+      // n fits into the free bits below the last row. ~n fits above row 0, from bit Width + 1, but for ~n[2], which
+      // goes to row 1: the constant 1 plus ~n[1:0] is 4 - n[0], and so takes three bits.
       if (k == 0) begin : gen_first
         assign rows[0+:2*Width] = (2 * Width)'({
           ~negative[2*Digits-1:3], ~negative[0], negative[0], negative[0], row

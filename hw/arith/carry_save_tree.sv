@@ -4,8 +4,8 @@
 // are left after Rows - 2 adders. So every level turns each three rows into two and passes on the remainder: 14 rows
 // become 10, 7, 5, 4, 3 and 2, with 12 adders in 6 levels, the paper's tree (section 3.4).
 //
-// Row r of rows_i is rows_i[Width*r +: Width]; the last rows enter later levels, so they may arrive late. Rows: 2 or
-// more. Combinational; about log(Rows / 2) / log(1.5) full-adder delays.
+// Row r of rows_i is rows_i[Width*r +: Width]. The rows of highest r enter at later levels, so they may arrive late.
+// Rows: 2 or more. Combinational; about log(Rows / 2) / log(1.5) full-adder delays.
 module carry_save_tree #(
   parameter int unsigned Width = 48,
   parameter int unsigned Rows  = 14

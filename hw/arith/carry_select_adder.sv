@@ -6,8 +6,8 @@
 //
 // GroupWidths: see arith_pkg; the widths must add up to Width.
 // LookAhead: the groups add by carry look-ahead (1, as in the paper) or by two ripple-carry adders each (0).
-// Combinational: the delay is that of the groups, NumGroups - 2 carry multiplexers and one sum multiplexer. Groups have
-// ceil(log2(widest group)) levels with LookAhead, else one full-adder delay per bit of the widest group.
+// Combinational. The delay is the sum of three: the widest group's own delay, NumGroups - 2 multiplexers of the carry,
+// one multiplexer of a sum. A group of n bits has ceil(log2(n)) levels with LookAhead, else n full-adder delays.
 module carry_select_adder #(
   parameter int unsigned Width = 48,
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = arith_pkg::graded_groups(Width),

@@ -1,10 +1,9 @@
 // Counts the zeros above the highest 1 of a word.
 //
-// Setting all bits below the highest 1 turns the word into a run of ones; the top of the run marks the highest 1. Bit j
-// of count_o is the OR of the marks at all places p for which bit j of Width - 1 - p, the zeros above p, is 1.
+// Setting all bits below the highest 1 turns the word into a run of ones; its top, bit p, marks the highest 1. The
+// count is Width - 1 - p. So bit j of count_o is the OR of the marks of all p with a 1 in bit j of Width - 1 - p.
 //
-// Combinational: $clog2(Width) levels, one AND, and an OR of half the places. If a_i is 0, zero_o is 1, count_o all
-// ones.
+// Combinational: $clog2(Width) levels, one AND, one OR of half the bits. If a_i is 0, zero_o is 1, count_o all ones.
 module leading_zero_counter #(
   parameter int unsigned Width = 24
 ) (
@@ -19,7 +18,7 @@ module leading_zero_counter #(
     $error("leading_zero_counter: expected a Width of 2 or more");
   end
 
-  // Returns a mask of the places p for which bit j of Width - 1 - p is 1.
+  // Returns a mask of the bit positions p for which bit j of Width - 1 - p is 1.
   function automatic bit [Width-1:0] places(int unsigned j);
     for (int unsigned i = 0; i < Width; i++) places[Width-1-i] = ((i >> j) % 2) == 1;
   endfunction

@@ -1,8 +1,8 @@
 // Word-wide multiplexer with a select line of its own for every bit:
 // out_o[i] = select_i[i] ? when_1_i[i] : when_0_i[i]. Combinational.
 //
-// Ordered = 1: the user guarantees that when_0_i[i] implies when_1_i[i]. (A group that generates a carry without a
-// carry in also does so with one.) The multiplexer then needs no inverted select: AND-OR is enough.
+// Ordered = 1: the user guarantees that when_0_i[i] implies when_1_i[i]. (A group's carries do: a carry that is
+// generated without a carry in is also generated with one.) AND-OR is then enough, without inverted select.
 module multiplexer #(
   parameter int unsigned Width = 1,
   parameter bit Ordered = 1'b0

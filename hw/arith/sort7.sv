@@ -9,7 +9,7 @@ module sort7 #(
   output logic [7*Width-1:0] sorted_o
 );
 
-  // Octal digits: the word that a word is compared with, or itself if it is not compared; step 5 and word 6 first.
+  // In each step, octal digit n is the index of the word that word n is compared with (n: none). Top: step 5, word 6.
   localparam logic [6*21-1:0] Partners = {
     21'o5634120, 21'o6452310, 21'o4563120, 21'o6234501, 21'o3516042, 21'o0452316
   };

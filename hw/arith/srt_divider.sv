@@ -103,7 +103,7 @@ module srt_divider #(
     );
   end
 
-  // ---- Remainder w, the last residual: if it is negative, the quotient is a unit less and the remainder is d + w > 0
+  // ---- Remainder: the last residual w or, if w is negative, d + w > 0; the quotient is then one unit smaller
 
   localparam int unsigned QuotientWidth = 2 * Rows + 2;
   logic [ResWidth-1:0] remainder, unused_divisor;

@@ -29,7 +29,7 @@ module srt_first_row #(
   assign from_4 = y >= First4[sixteenth+:6];
   assign digit_o = {from_2 & ~from_4, ~from_2 | (from_3 & ~from_4)};
 
-  // ---- Subtract 0 or d, and 0, 2 d or 4 d, as complements; the +1 of each goes into a free lowest bit
+  // ---- Subtract two multiples, 0 or d, and 0, 2 d or 4 d: add complements, with each +1 in a free lowest bit
 
   logic [Width-1:0] upper, carry;
 

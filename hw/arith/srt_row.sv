@@ -18,7 +18,7 @@ module srt_row #(
 
   localparam int unsigned EstimateWidth = 7;  // the estimate of 4 w: 4 integer, 3 fraction bits
 
-  // ---- Estimate 4 w from the first bits of both words
+  // ---- Estimate 4 w from the first bits of sum_i and carry_i
 
   logic [EstimateWidth-1:0] estimate;
 
@@ -34,7 +34,7 @@ module srt_row #(
   );
 
   // ---- Choose the digit (see srt_pkg) by the divisor's first three fraction bits. With its sign bit inverted, the
-  // estimate compares as an unsigned number. For a positive digit, the complement of the digit's multiple is added
+  // estimate compares as an unsigned number. `multiple` is -digit * d, without the +1 of two's complement
 
   localparam bit [8*8-1:0] MMinus1 = srt_pkg::thresholds(-1);
   localparam bit [8*8-1:0] M0 = srt_pkg::thresholds(0);

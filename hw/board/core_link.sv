@@ -1,16 +1,16 @@
-// Link to a host: lines and rays from words, words from results.
+// Link to a host: words become lines and rays, results become words.
 //
 // Bits 31:28 of a message's first word are its kind, bits 27:0 a number:
-//   1     the line of that number; its 16 words follow
+//   1     writes the line of that number; its 16 words follow
 //   2     memory has changed: it now has that number of lines, and the caches are emptied
 //   4-7   a ray: any_hit in bit 28; its tag, source_id, skip_id, t_max, and x, y, z of direction and origin follow
 // Other messages are ignored. A result is 8 words: result_t in the lowest bits, zeros above it.
 //
-// The host must send messages 1 and 2 while no ray is in the core; they wait until the core has no read in flight.
+// The host must send kinds 1 and 2 while no ray is in the core; they take effect when the core has no read in flight.
 // Words use valid/ready handshakes.
 //
 // A break (break_i, for a clock) ends the host's session: the next word is a message's first, and the rays in the core
-// are aborted. Of their results, only one that is being sent goes out. Words are accepted again when no ray is left.
+// are aborted. A result being sent is completed, others are dropped. Words are accepted again when no ray is left.
 module core_link
   import ray_core_pkg::*;
 (

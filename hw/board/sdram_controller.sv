@@ -3,9 +3,9 @@
 // A line is 32 neighbouring words of a row, and a row has 16 lines. Successive groups of 16 lines are in successive
 // banks. Commands leave from registers. The SDRAM's clock is the inverse of clk_i. So the SDRAM takes a command half a
 // clock after it left, and the word of a read (CAS latency 2) is sampled two clocks after its command left. Half a
-// period of clk_i must cover the SDRAM's access time, 6 ns, and the delays of pads out and back, some 6 ns: 40 MHz.
-// Writes have priority over reads, refreshes over both. A line comes with its request's id and stays until it is taken.
-// A line to be written stays at the port until its last word leaves.
+// period of clk_i must cover the SDRAM's access time, 6 ns, and the delays of pads out and back, some 6 ns: at most 40
+// MHz. Writes have priority over reads, refreshes over both. A line that was read comes with its request's id and stays
+// until it is taken. A line to be written must stay at the port until its last word leaves.
 //
 // Latency: 36 clocks (at 40 MHz, from the clock that takes a read to line_valid_o). Throughput: a line in 37 clocks.
 // Source: data sheets of MT48LC16M16A2 (Micron) and AS4C16M16 (Alliance): 4 banks, 8,192 rows, 512 columns, 256 Mbit.
@@ -148,7 +148,7 @@ module sdram_controller
   end
 
   always_ff @(posedge clk_i) begin
-    // Whether a line is taken is known late, so its number is registered in every clock.
+    // It is known late in a clock whether a line is taken, so its number is registered in every clock.
     if (state_q == StateIdle) begin
       word_q       <= '0;
       writing_q    <= write_valid_i;

@@ -6,11 +6,11 @@
 //
 //   upwards    for a number: the low DigitWidth bits of a column's sum are a balanced digit of the number; the rest is
 //              carried into the next column;
-//   downwards  for a sign: the sum is multiplied by 2**DigitWidth before the next column is added. A column has at most
-//              Products products of magnitude 2**(2 DigitWidth - 2) or less. So all columns below change the sum by
-//              less than Products 2**(DigitWidth - 2) (1 + 2**(1 - DigitWidth)) < 2**SureBit, and the sign of a larger
-//              sum is final. After a smaller sum, the next column's is below 2**(2 DigitWidth + log2 Products).
-//
+//   downwards  for a sign: the sum is multiplied by 2**DigitWidth before the next lower column is added. A column has
+//              at most Products products of magnitude 2**(2 DigitWidth - 2) or less. So all lower columns together
+//              change the sum by less than Products 2**(DigitWidth - 2) (1 + 2**(1 - DigitWidth)) < 2**SureBit: the
+//              sign of a larger sum is final. A smaller sum stays below 2**(2 DigitWidth + log2 Products) with the next
+//              column.
 // Latency: 1 clock. Throughput: one term a clock (as two words, sum_i + carry_i modulo 2**Width).
 module exact_accumulator
   import exact_pkg::*;

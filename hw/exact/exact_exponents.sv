@@ -3,8 +3,8 @@
 // The unit b of coordinates and of their differences comes from the smallest exponent of all non-zero coordinates, the
 // unit c of the direction from the smallest exponent of its non-zero components. A hit is at t = D / S (exact_unit),
 // with D in units of b**3 and S in units of b**2 c. So t is below a limit if D * b is below S * (limit * c). The
-// factors `one` (b) and `limit` (limit * c) are in units of the smaller of their exponents. All numbers fit: see
-// digits_of.
+// factors b (`one`) and limit * c (`limit`) are stored as numbers, too; their common unit is the lower of their last
+// bits. exact_pkg's digits_of gives enough digits for all numbers.
 //
 // Latency: 2 to 4 clocks (2 for the exponents, 3 for their digits, 4 for the rest).
 module exact_exponents

@@ -62,15 +62,15 @@ package exact_pkg;
   // ---- Number of digits that a range of exponents needs
   //
   // With e its exponent field (1 for subnormals), a float is a whole number of significand_width bits in units of
-  // 2**(e - Bias - FracWidth). Let the smallest exponent give the unit, and let the largest be `spread` above it. The
-  // difference of two such numbers is below 2**(spread + significand_width + 1); the digits returned can hold it.
+  // 2**(e-Bias-FracWidth). Let the smallest exponent give the unit, and the largest be `spread` above it. A difference
+  // of two such numbers is below 2**(spread + significand_width + 1); digits_of returns enough digits for it.
 
   function automatic int unsigned digits_of(int unsigned spread, int unsigned significand_width,
                                             int unsigned width);
     digits_of = (spread + significand_width + 3 + width - 1) / width;
   endfunction
 
-  // Return the largest number of digits of a difference, and the largest gap of `limit` and `one` (exact_exponents).
+  // Return the maximum number of digits of a difference, and the maximum shift of `limit` or `one` (exact_exponents).
   function automatic int unsigned difference_digits(
     int unsigned exp_width, int unsigned significand_width, int unsigned width);
     difference_digits = digits_of((1 << exp_width) - 3, significand_width, width);
@@ -111,7 +111,7 @@ package exact_pkg;
     logic [NumberWidth-1:0] x0;
   } instruction_t;
 
-  // ---- A step: a product of two digits, or a digit of a difference of floats, which is added to the accumulator
+  // ---- A step: adds a product of two digits, or a digit of a difference of floats, to the accumulator
 
   typedef struct packed {
     kind_e kind;

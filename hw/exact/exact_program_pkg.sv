@@ -4,7 +4,7 @@
 // before its last product has passed the pipeline (sim/checks/exact_checks.sv checks this). So instructions for
 // independent vectors alternate, or an instruction has a fence: it waits until all earlier results are written.
 //
-// Limit and Order compare hits; one of the two follows Hit if a request asks for hit and order.
+// Programs: Hit decides whether the ray hits; Limit and Order compare the hit's t. One of these two can follow Hit.
 package exact_program_pkg;
 
   // Programs are indexed from left to right; no top module uses everything.
@@ -37,7 +37,7 @@ package exact_program_pkg;
 
   // ---- Instructions
 
-  // Returns an instruction for the number `result`: x0 y0 plus or minus more products, see kind_e (floats: x0 - y0).
+  // Returns an instruction for the number `result`: floats x0 - y0, or a sum of products (signs: kind_e).
   function automatic instruction_t number(kind_e kind, place_t result, place_t x0, place_t y0,
                                           place_t x1 = '0, place_t y1 = '0, place_t x2 = '0,
                                           place_t y2 = '0);
@@ -51,7 +51,7 @@ package exact_program_pkg;
     end
   endfunction
 
-  // Returns instructions that make numbers of the direction's floats.
+  // Returns instructions that convert the direction's floats to numbers.
   function automatic vector_t direction();
     for (logic [4:0] k = 0; k < 3; k++) begin
       direction[k] = number(KindRay, I + k, place_t'(PlaceDirection) + k, Zero);
@@ -75,7 +75,7 @@ package exact_program_pkg;
     dot_product = number(kind, result, x, y, x + 5'd1, y + 5'd1, x + 5'd2, y + 5'd2);
   endfunction
 
-  // Returns an instruction that takes the sign of x . y; `last`: it ends the program.
+  // Returns an instruction that takes the sign of x . y; with `last`, it is the last of its program.
   function automatic instruction_t sign(kind_e kind, place_t x, place_t y, logic last = 1'b0);
     sign = dot_product(kind, '0, x, y);
     sign.decide = 1'b1;
@@ -110,7 +110,7 @@ package exact_program_pkg;
     cross_product(N, A, B),
     sign(KindEdge, I, M),
     sign(KindEdge, I, N, 1'b1),
-    // Limit: t = A . N / I . N with N = (B - A) x (C - A), against limit / 1; here B and C are B - A and C - A
+    // Limit: compares t = (A . N) / (I . N) with limit / 1; N = (B - A) x (C - A), places B and C hold B - A and C - A
     difference(B, Triangle + 5'd3, Triangle),
     difference(C, Triangle + 5'd6, Triangle),
     difference(A, Triangle, Origin),
@@ -121,7 +121,7 @@ package exact_program_pkg;
     dot_product(KindPlane, T, A, N),
     dot_product(KindEdge, S, I, N),
     compare(),
-    // Order: t against t' of the other triangle's hit
+    // Order: compares t, as for Limit, with t' of the other triangle's hit
     difference(B, Triangle + 5'd3, Triangle),
     difference(C, Triangle + 5'd6, Triangle),
     difference(A, Triangle, Origin),

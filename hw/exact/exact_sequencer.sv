@@ -2,9 +2,9 @@
 //
 // For a number, columns are computed upwards, from column 0 to the last digit; for a sign downwards, from the highest.
 // A column has one step for each pair of its digits and each term (product) of the instruction. An instruction with a
-// fence begins when written_i is high. stop_i: the sign of the instruction at stop_address_i is known. If the steps of
-// this instruction are still being issued, the next instruction follows at once. After Hit, the comparison is issued
-// before it is known whether there is a hit; abort_i ends the program.
+// fence begins when written_i is high (all earlier results are written). stop_i: the sign of the instruction at
+// stop_address_i is known. If this instruction is still being issued, its other steps are skipped. After Hit, the
+// comparison is issued before it is known whether there is a hit; abort_i ends the program.
 //
 // start_i: the counts of digits are valid, except pair_digits_i, which is valid a clock later. The first step is issued
 // in the clock after start_i.
@@ -42,7 +42,7 @@ module exact_sequencer
   output logic [AddressWidth-1:0] result_address_o
 );
 
-  // ---- Fetch: the next instruction, and the numbers of the last digits of x, y and the result
+  // ---- Fetch: the next instruction, and the indices of the last digits of its x, y and result
 
   instruction_t fetched, instruction_q;
   logic [6:0] compares, next_q, address_q;

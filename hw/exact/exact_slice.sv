@@ -1,5 +1,5 @@
-// A digit of a shifted significand: digit_o is digit digit_i of significand_i * 2**shift_i, in digits of DigitWidth
-// bits. Combinational. shift_i is at most MaxShift; digit_i may be any number.
+// A digit of a shifted significand: significand_i * 2**shift_i is cut into digits of DigitWidth bits; digit_o is the
+// digit with index digit_i, or 0 beyond the last. shift_i is at most MaxShift. Combinational.
 module exact_slice
   import exact_pkg::*;
 #(

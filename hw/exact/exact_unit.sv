@@ -1,16 +1,16 @@
 // Exact unit: decides hits, limits and which of two hits is nearer.
 //
-// Decides as host/exact does, ties included, from the floats (binary32 or another format) of the ray and the corners.
-// A, B, C are the corners minus the origin, I is the direction and N = (B - A) x (C - A):
+// Gives the answers of host/exact, ties included, from the floats (binary32 or another format) of the ray and the
+// corners. A, B, C are the corners minus the origin, I is the direction and N = (B - A) x (C - A):
 //
-//   hit    A . (B x C) is not 0, and I . (B x C), I . (C x A), I . (A x B) have its sign. A product I . M that is 0
-//          takes the sign of M's first non-zero component (as if the ray tilted towards +x, less towards +y, then +z)
+//   hit    A . (B x C) is not 0; I . (B x C), I . (C x A), I . (A x B) have its sign. If one of these, I . M, is 0, the
+//          sign of M's first non-zero component counts (as if I were tilted towards +x, less to +y, least to +z)
 //   order  the sign of t - limit or t - t'. For hits, t = D / S > 0 with D = A . N and S = I . N, and t' = D' / S' (or
 //          limit / 1). So the order is the sign of (D S' - D' S) D D'
 //
-// All are sums of products of floats, so whole numbers in units that the exponents give (exact_exponents), summed
-// without rounding. exact_program_pkg has the programs. Latency: up to 161 clocks, at worst 3,686 (binary32, digits of
-// 48 bits). 161 is for exponents at most 21 apart (hit 72, limit 56, order 98, hit and order 161).
+// All these are sums of products of floats: whole numbers in units that come from the exponents (exact_exponents),
+// summed without rounding. exact_program_pkg has the programs. Latency: at worst 3,686 clocks, or 161 if exponents are
+// at most 21 apart (binary32, digits of 48 bits). The 161 are for hit and order; hit takes 72, limit 56, order 98.
 //
 // Coordinates are of magnitude 2**126 at most, the direction is not 0, the limit is positive; all are finite. hit_i and
 // against_i select the questions. hit_o is high if hit_i was low. order_o is 0 for a miss or if no order was asked for;
@@ -92,7 +92,7 @@ module exact_unit
     .pair_digits_o        (pair_digits)
   );
 
-  // ---- Issue
+  // ---- Issue: the sequencer's steps
 
   typedef struct packed {
     step_t step;
@@ -162,7 +162,7 @@ module exact_unit
     limit_q     <= 32'(x_place) == PlaceLimit;
   end
 
-  // ---- Stage 1: digits of numbers, from memory, or of floats. Only x can be the limit or 1; each has its own shift
+  // ---- Stage 1: digits of numbers, from memory, or of floats. Only x can be the limit or 1, which have own shifts
 
   logic write, loads;
   logic [DigitWidth-1:0] digit;

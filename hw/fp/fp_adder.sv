@@ -1,17 +1,17 @@
 // Floating-point add and subtract: a_i + b_i, or a_i - b_i with subtract_i.
 //
 // There are two paths; the second needs no rounding and the first no long normalising shift:
-//   far   the smaller operand shifted right, one addition, the shared rounder
-//   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least the leading bit:
-//         exact, so only a leading-zero count and a left shift
+//   far   the smaller operand is shifted right; then one addition, and rounding by fp_round
+//   near  for a difference of operands whose exponents are equal, or differ by 1 while the leading bit cancels. The
+//         difference is exact, so it needs only a leading-zero count and a left shift.
 //
 // Pipelined: registers between ordering and adding, between adding and rounding, and after the result. Latency: 0 or,
 // Pipelined, 3 clocks. Throughput: one operation a clock. Several stages use rounding_mode_i, so it must not change
 // while operations are in flight.
 //
-// Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when rounding down, unless both
-// addends are zeros of one sign. Infinity minus infinity is invalid. A subnormal sum is exact, so underflow is never
-// raised and tininess_after_i has no effect.
+// Takes every bit pattern. Correctly rounded. A sum of two zeros of one sign keeps the sign; any other sum of exactly
+// zero is +0, or -0 when rounding down. Infinity minus infinity is invalid. A subnormal sum is exact, so underflow is
+// never raised and tininess_after_i has no effect.
 // Source: IEEE 754-2019, clauses 5.4.1 and 6.3; the two paths: Farmwald, Stanford 1981.
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
@@ -204,8 +204,8 @@ module fp_adder #(
              near_difference_2, near_mark_2})
   );
 
-  // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one. The result is then
-  // subnormal or zero, with an exponent field of 0. The count is 0 if this path is not taken.
+  // ---- Near path: normalise. near_mark stops the zero count where the exponent becomes the smallest one. The result
+  // is then subnormal or zero, with an exponent field of 0. On the far path, the count is 0 and the result is not used.
 
   logic [NearWidth-1:0] near_normal;
   logic [CountWidth-1:0] near_count;

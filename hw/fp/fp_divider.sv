@@ -4,14 +4,14 @@
 //
 // QuotientBits = 0 rounds correctly (IEEE 754). Other values truncate the quotient to that many significant bits, the
 // leading one included. (21 gives the quotients printed in the paper's worked example, up to 5 ulp low in binary32.) A
-// truncated quotient is rounded only if the result is subnormal. The bits that are cut off raise no flag.
+// truncated quotient is rounded only if the result is subnormal. The truncation itself raises no flag.
 //
 // Pipelined: registers after normalising, after each of the Rows + 3 stages of srt_divider (a row gives two bits of the
 // quotient; binary32 has 12 rows) and after the result. Latency: 0 or, Pipelined, Rows + 5 clocks. Throughput: one
 // division a clock. Registers load only what comes with valid_i; in other clocks the outputs of a pipelined divider are
 // invalid. The last stage uses rounding_mode_i, so it must not change while divisions are in flight.
 //
-// A finite number by zero is infinity and raises divide_by_zero; 0/0 and inf/inf are invalid.
+// A non-zero finite number divided by zero is infinity and raises divide_by_zero; 0/0 and inf/inf are invalid.
 // Source: IEEE 754-2019, clauses 5.4.1 and 7; Choi and Chung, Trans. KIEE 48A-5-21, section 4.2.
 module fp_divider #(
   parameter int unsigned ExpWidth     = 8,
@@ -33,8 +33,8 @@ module fp_divider #(
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
   localparam int unsigned CountWidth = $clog2(FracWidth + 1);
   localparam int unsigned RoundExpWidth = ExpWidth + 2;  // exponent_i of fp_round
-  // Fraction bits of the doubled quotient, which is in (1, 4); a row gives two. If the quotient is below 2, they hold
-  // the significand's fraction and a guard bit or, with QuotientBits, the bits that are kept.
+  // Fraction bits of the doubled quotient, which is in (1, 4); a row gives two. A quotient below 2 needs most: the bits
+  // of the significand's fraction and a guard bit or, with QuotientBits, all kept bits but the leading one.
   localparam int unsigned QuotientFrac = (QuotientBits == 0) ? FracWidth + 1 : QuotientBits - 1;
   localparam int unsigned Rows = (QuotientFrac + 1) / 2;
   localparam int unsigned QuotientWidth = 2 * Rows + 2;
@@ -76,8 +76,8 @@ module fp_divider #(
     assign norm[n] = sig[n] << count[n];
   end
 
-  // ---- Exponent for fp_round: that of a / b, minus one because the quotient is doubled, and minus one because
-  // fp_round expects the exponent less one: (a_exp - a_count) - (b_exp - b_count) + bias - 2
+  // ---- Exponent for fp_round: (a_exp - a_count) - (b_exp - b_count) + bias - 2. The -2: one because the quotient is
+  // doubled, one because fp_round expects the exponent less one
 
   localparam logic [RoundExpWidth-1:0] Offset = RoundExpWidth'(2 ** (ExpWidth - 1) - 3);
   logic [RoundExpWidth-1:0] a_exp_offset, exp_difference, count_difference;
@@ -115,7 +115,7 @@ module fp_divider #(
     .carry_o()
   );
 
-  // ---- Specials
+  // ---- Special results
 
   fp_pkg::special_t special;
 
@@ -190,7 +190,7 @@ module fp_divider #(
     .valid_o(divided)
   );
 
-  // ---- Align the quotient for fp_round; with QuotientBits, truncate it, one bit further down if it is below 2
+  // ---- Align the quotient for fp_round. With QuotientBits, keep that many bits, from the leading one downwards
 
   logic [RoundSigWidth-1:0] significand;
 

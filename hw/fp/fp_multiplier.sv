@@ -1,15 +1,15 @@
 // Floating-point multiply: a_i * b_i.
 //
-// Significands are multiplied without normalising: a subnormal one has leading zeros. The product's shift is computed
-// from the operands, in parallel with the multiplication. It is to the left by the leading zeros, but not beyond the
-// smallest exponent, or to the right for a subnormal result. One shift and fp_round follow the product.
+// Significands are multiplied without normalising: a subnormal one has leading zeros. In parallel, the product's shift
+// is computed from the operands: left by the leading zeros, as long as the exponent does not fall below the smallest
+// one; right if the exponent is below the smallest one from the start. Then the product is shifted and rounded.
 //
 // Arith: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
 // Pipelined: registers before the product, after it, and after the result. Latency: 0 or, Pipelined, 3 clocks.
 // Throughput: one operation a clock. The last stage uses rounding_mode_i: keep it while operations are in flight.
 //
-// Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the operands' signs, also that of zeros
-// and infinities. Zero times infinity is invalid.
+// Takes every bit pattern. Correctly rounded. The sign, of zeros and infinities too, is the exclusive OR of the
+// operands' signs. Zero times infinity is invalid.
 // Source: IEEE 754-2019, clause 5.4.1; the paper's multiplier, section 3.4.
 module fp_multiplier #(
   parameter int unsigned ExpWidth    = 8,
@@ -50,7 +50,7 @@ module fp_multiplier #(
   );
 
   // ---- Add the exponents: fp_round expects the product's biased exponent less one, a_exp + b_exp - bias - 1 = a_exp +
-  // b_exp - 2**(ExpWidth-1). Subtracting 2**(ExpWidth-1) keeps the low bits.
+  // b_exp - 2**(ExpWidth-1). Subtracting 2**(ExpWidth-1) changes only the top two bits.
 
   logic [ExpWidth:0] exp_sum, exp;
   logic exp_negative;
@@ -68,7 +68,7 @@ module fp_multiplier #(
   assign exp_negative = exp_sum[ExpWidth:ExpWidth-1] == 2'b00;
   assign exp = exp_sum ^ {~exp_sum[ExpWidth-1], 1'b1, {(ExpWidth - 1) {1'b0}}};
 
-  // ---- Specials
+  // ---- Special results
 
   fp_pkg::special_t special;
 
@@ -83,7 +83,7 @@ module fp_multiplier #(
     end
   end
 
-  // ---- Cut before the product
+  // ---- First register: before the product
 
   logic [SigWidth-1:0] a_sig_0, b_sig_0;
   logic [ExpWidth:0] exp_0;
@@ -115,7 +115,7 @@ module fp_multiplier #(
   );
 
   // ---- Left shift: the leading zeros of the subnormal operand, if there is one (the product of two subnormals is far
-  // below the smallest subnormal). The mark stops the count where the exponent becomes the smallest one.
+  // below the smallest subnormal). `mark` stops the count of zeros where the exponent becomes the smallest one.
 
   logic [SigWidth-1:0] may_be_subnormal, mark;
   logic [LeftWidth-1:0] left;
@@ -131,7 +131,7 @@ module fp_multiplier #(
     .zero_o()
   );
 
-  // ---- Cut after the product
+  // ---- Second register: after the product
 
   logic [ProdWidth-1:0] product_1;
   logic [ExpWidth:0] exp_1;

@@ -6,9 +6,9 @@
 // need 3 <= ExpWidth and 2 <= FracWidth <= 2**(ExpWidth-1): the exponent of a subnormal result then fits into ExpWidth
 // + 2 signed bits. The divider needs FracWidth <= 53, the multiplier, with arith_pkg's groups, FracWidth <= 75.
 //
-// Sums and differences of significands and exponents are instances of hw/arith's adder (of kind Arith), products and
-// quotients of its multiplier and divider. Comparisons and steps by one or two are the language's operators: synthesis
-// makes structures for them that are no slower than those of hw/arith.
+// hw/arith's adder (of kind Arith) adds and subtracts significands and exponents; its multiplier and srt_divider
+// multiply and divide significands. Comparisons and steps by one or two use the language's operators: synthesis makes
+// structures for them that are no slower than those of hw/arith.
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
 package fp_pkg;
 

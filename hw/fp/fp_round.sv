@@ -61,7 +61,7 @@ module fp_round #(
   assign base = exponent_i[FieldWidth-1:0] & {FieldWidth{~negative}};
 
   if (SubnormalShift) begin : gen_shift
-    // By -exponent_i = ~exponent_i + 1; leaving out bit 0 of the significand is the shift by 1
+    // Shift by -exponent_i = ~exponent_i + 1: ~exponent_i places, and one more by leaving out the significand's bit 0
     logic [SigWidth-2:0] shifted;
     logic lost;
 
@@ -112,8 +112,8 @@ module fp_round #(
   // Computed in parallel with the increment
   assign overflow = (field >= InfField) | ((field == InfField - 1'b1) & (&fraction) & increment);
 
-  // ---- Tininess: before rounding, both integer bits are 0. After rounding, the value is not tiny if rounding it with
-  // an unbounded exponent, so one bit further down, carries into the integer bit: all bits are 1, and are incremented.
+  // ---- Tininess: before rounding, a value is tiny if its integer bits are 00. After rounding, it is not tiny if it
+  // rounds up to 1 with one bit more (unbounded exponent): if all bits down to the guard bit are 1, and are incremented
 
   logic tiny, increment_below;
   assign increment_below = (nearest & placed[1]) | (away & |placed[1:0]);

@@ -1,10 +1,10 @@
 // Adds, subtracts or multiplies vectors word by word: result[n] = a[n] op b[n].
 //
-// Latency: 3 clocks, or one step. With Clocks = 1, each word has an adder or multiplier (core): a vector is taken in
-// every clock, and step_i is ignored. Else (5 or more) Clocks - 3 words share a core, and step_i must be high in one of
-// Clocks clocks. A clock edge with step_i high takes a vector; result_o then holds the results of the vector taken one
-// step before. Multiply = 1: products. Multiply = 0: sums, or differences for words with a 1 in Subtract. Accepts all
-// bit patterns.
+// Latency: 3 clocks, or one step. Multiply = 1: products; 0: sums, or differences for words with a 1 in Subtract.
+// * Clocks = 1: each word has a core (adder or multiplier). A vector is taken in every clock; step_i is ignored.
+// * Clocks of 5 or more: Clocks - 3 words share a core. A clock edge with step_i high takes a vector; result_o then
+//   holds the results of the vector taken one step before. step_i must be high in one of every Clocks clocks.
+// Accepts all bit patterns.
 module fp_vector #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,

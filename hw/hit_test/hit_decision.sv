@@ -3,7 +3,7 @@
 // A record has a plane, d = N . A, and three edge planes E_k with error bounds bound_k (see hit_test_pkg). I is the
 // ray's direction. U_k = I . E_k, as computed, is sure if bound_k < |U_k| < infinity: its sign is then exact. The sign
 // of d is exact; if d is NaN, it is unknown. If a ray hits, the exact V = I . N and U_k have the sign of d.
-//   miss   d is 0, or a sure U_k has another sign than d or, if d is NaN, than another sure U_k
+//   miss   d is 0; or a sure U_k has another sign than d; or d is NaN and two sure U_k have different signs
 //   hit    all U_k are sure and have d's sign, and V is fit for a division: V is a normal number with d's sign, and its
 //          exponent is at most max_grazing below the largest exponent of N's words
 //   doubt  everything else

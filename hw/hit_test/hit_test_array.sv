@@ -5,7 +5,7 @@
 // order.
 //
 // counter_o is the counter of count_e that count_select_i selects (0 for other values), summed over the lanes since
-// reset, modulo 2**CounterWidth, up to three clocks late. Counters of clocks count each lane: 4 lanes, 4 per clock.
+// reset, modulo 2**CounterWidth, up to three clocks late. With 4 lanes, a counter of clocks counts up to 4 per clock.
 module hit_test_array
   import hit_test_pkg::*;
 #(

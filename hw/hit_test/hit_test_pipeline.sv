@@ -6,13 +6,13 @@
 //   decide   hit, miss or doubt               see hit_decision
 //   divide   t = d / V                        a divider
 //   nearest  the nearest hit of the burst     see nearest_hit
-//   point    P_k = (d I_k) / V, equation 10   3 dividers, because a burst may have a single test
+//   point    P_k = (d I_k) / V, equation 10   3 dividers, because each test may be a burst of its own
 //
 // Throughput: one test a clock. Latency: DotLatency + divide_latency + 3 clocks (see hit_test_pkg): from the clock edge
-// that takes a test to the edge after which its report, or the end of its burst, is at the output. All tests of a burst
-// must have the same I.
+// that takes a test to the edge after which its report, or the result of its burst, is at the output. All tests of a
+// burst must have the same I.
 //
-// Input: valid/ready; first_i and last_i mark the ends of a burst, tag_i is returned with results.
+// Input: valid/ready; first_i and last_i mark the first and last test of a burst; tag_i is returned with results.
 // Output: valid/ready; one word carries up to three things:
 //   report_o         not ReportNone: the test report_tag_o is in doubt or in a near tie
 //   closed_o         a burst is over; bursts end in the order in which they came. If found_o is high, its nearest hit

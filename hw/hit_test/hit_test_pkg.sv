@@ -25,12 +25,12 @@ package hit_test_pkg;
   // ---- Error of t = d / V, computed: at most 2**(TErrorUnit + t_error) units in its last place
   //
   // Let u = 2**-(FracWidth+1), e(x) the exponent of x, e(N) the largest e(N_k), V = fl(N . I) and g = e(N) - e(V).
-  // Error of V: |I_k| < 2, N and d are within 1.01 u of the exact ones, and a dot product rounds three times. So V is
-  // off by at most 4.04 u * 2 (|N_x| + |N_y| + |N_z|) < 48.5 u 2**e(N), which is at most r = 48.5 u 2**g of V.
-  // Error of t: d adds less than 2 u, the division u. Floats near t are at least u t apart. So at most
+  // Error of V: |I_k| < 2, N and d have relative errors up to 1.01 u, a dot product rounds three times. So V is off by
+  // at most 4.04 u * 2 (|N_x| + |N_y| + |N_z|) < 48.5 u 2**e(N). Relative to V: at most r = 48.5 u 2**g.
+  // Error of t: d adds a relative error below 2 u, the division u. Floats near t are at least u t apart. So at most
   // (48.5 * 2**g + 3.2) / (1 - r) of them lie between t and the exact t. This is below 2**(6 + max(g, 0)) while r <=
-  // 0.19: for all g up to max_grazing, if FracWidth >= 7. (A test with a larger g, a ray that grazes the plane, is a
-  // doubt.)
+  // 0.19. That holds for all g up to max_grazing, if FracWidth >= 7. (With a larger g, the ray grazes the plane, and
+  // the test is a doubt.)
   // This holds for RoundNearestEven; the other modes have twice the error.
   localparam int unsigned TErrorUnit = 6;
   localparam int unsigned TErrorWidth = 4;

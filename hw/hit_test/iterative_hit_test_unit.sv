@@ -6,7 +6,7 @@
 //
 //   clock      event
 //   1-3        Ix Iy Iz shift into I-3, I-2, I-1, which rotate while they are multiplied
-//   4-7        a, b, c, d in the factor
+//   4-7        a, b, c, d into the factor register
 //   M+4..M+9   the products a Ix, b Iy, c Iz, d Ix, d Iy, d Iz; the third and the last three are kept
 //   M+A+5      (+0 + a Ix) + b Iy; as in the paper, the sum from +0 turns a Ix = -0 to +0, unless rounding down
 //   M+2A+5     I . N, the divisor; the last three products are divided in the clocks after it
@@ -36,8 +36,8 @@ module iterative_hit_test_unit
 
   localparam int unsigned NumWords = 7;
 
-  // The adder's two sums of a test must not collide with those of the next. The last of the three products that wait
-  // for the divisor must arrive before the first is divided, and leave before the next test's products arrive.
+  // The adder's two sums of a test must not collide with those of the next test. Three products wait for the divisor:
+  // the last must arrive before the first is divided, and leave before the next test's first arrives.
   if (AdderLatency < 2 || 2 * AdderLatency - 1 > NumWords) begin : gen_check
     $error("iterative_hit_test_unit: expected an AdderLatency of 2 to (NumWords + 1) / 2");
   end

@@ -1,7 +1,7 @@
 // Box test: which children of a node a ray enters, near first.
 // Latency: 21 clocks (BoxLatency). Throughput: a node line and a ray in Clocks clocks.
 //
-//   take        node, then node and ray                                     registers
+//   take        the node, a clock later the ray's words                     registers
 //   subtract    D_k = origin_k - O_k                                        3 adders
 //   scale       2**E, a bound of t in this node; caps of 1 / I_k            see ray_scale
 //   multiply    a_k = D_k / I_k                                             3 multipliers
@@ -12,31 +12,31 @@
 //   sort        near first; the group                                       see child_sort, sort7
 //
 // If Clocks is not 1, one child is stepped and entered in each clock, and the latency is Children clocks more. The
-// ray's words come from a memory, a clock after node_i.
+// ray's words come from a memory: a clock after ctx_i and node_i.
 //
 // In:  ctx_i        the ray's context; node_i: its node, see ray_core_pkg; a node with an error has no children
 //      origin_i     O, binary32; word x lowest, here and below
 //      inverse_i    1 / I_k, rounded to nearest (infinite where I_k is zero); the largest I_k is in [1, 2)
-//      t_max_i      a positive binary32 number without its sign, or infinity: no farther hits are wanted
-// Out: ctx_o, boxes_o  the group; entries that are in neither mask are invalid
+//      t_max_i      no hits beyond it are wanted: a positive binary32 number without its sign, or infinity
+// Out: ctx_o, boxes_o  see ray_core_pkg; an entry of the group that is in neither mask, inner or leaf, is invalid
 //
 // Claim: if the ray has a point O + t I with 0 < t <= t_max in a box, in exact arithmetic, the box is entered. Proof,
 // with u = 2**-24 and without the bias in e_k:
 //
-//  1. Bound of t. In the box, t is at most t_max and at most (|origin_k - O_k| + 255 * 2**e_k) / |I_k| for each k. Let
-//     2**M be above the computed |D_k| and above 2**(e_k + 8). Then the dividend is below 2**(M + 1), and the quotient
-//     below 2**(M + exponent(1 / I_k) + 2). E is the least of these exponents and that of t_max plus one, so t < 2**E.
-//     E is raised to at least -100, so that underflow changes less than a unit.
+//  1. Bound of t. In the box, t is at most t_max and, for each k, at most (|origin_k - O_k| + 255 * 2**e_k) / |I_k|.
+//     Let 2**M be above the computed |D_k| and above 2**(e_k + 8). Then the dividend is below 2**(M + 1), and the
+//     quotient below 2**(M + exponent(1 / I_k) + 2). E is the least of these three exponents and exponent(t_max) + 1,
+//     so t < 2**E. E is raised to at least -100, so that underflow changes less than a unit.
 //  2. Error of planes. The ray meets a plane of the grid at t = (D_k + q 2**e_k) / I_k = a_k +- q s_k, with
 //     s_k = 2**e_k / |I_k|. a_k is off by three roundings, 3.01 u |a_k|, and 1 unit by truncation. q s_k is off by one
 //     rounding, u q s_k, and 2 units by two truncations. r_k = 4 u |a_k| + 256 u s_k + 6 units is more, though its
 //     first two terms are truncated.
 //  3. If s_k is above the cap, 2**(E + 2), the ray moves less than a quarter of a cell along k while t < 2**E. It is
-//     replaced by a ray with s_k = 2**(E + 2), which moves a quarter of a cell. The two are less than a quarter of a
-//     cell apart, so t changes by less than s_k / 4 = 2**E. This is added to r_k.
+//     replaced by a ray whose s_k is the cap, which moves a quarter of a cell. The two rays are less than a quarter of
+//     a cell apart, so t changes by less than a quarter of the new s_k, 2**E. This is added to r_k.
 //  4. |a_k| is limited to 2**(E + 11). As 255 s_k is less than 2**(E + 10), all planes are then beyond 2**E, or all
-//     behind the ray, as without the limit. If binary32 overflows on an axis, all planes of the axis count as met.
-//  5. So near planes are computed too near and far planes too far: the box is entered.
+//     behind the ray, as they are without the limit. If binary32 overflows on an axis, the axis excludes no box.
+//  5. So no near plane is computed too far, and no far plane too near: the box is entered.
 //
 // Source: quantised boxes: Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through
 // compressed wide BVHs", 2017.
@@ -263,7 +263,7 @@ module box_unit
   logic [Children*KeyWidth-1:0] keys;
   logic [Tests*KeyWidth-1:0] tested;
 
-  // Inputs of the tests: as they come, or kept for all children
+  // Inputs of the slab tests: as they come or, if children are tested one per clock, kept until the last is tested
   logic [Children*BoxWidth-1:0] boxes;
   logic [2:0] step_back, next_back;
   logic [3*StepWidth-1:0] step;

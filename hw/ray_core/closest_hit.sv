@@ -2,19 +2,19 @@
 //
 // A hit's t may be off by 2**t_error units (set_up_pkg), so it has an upper and a lower bound. Of a ray's certain hits,
 // the hit with the smallest upper bound is kept; this bound becomes the ray's t_max. A hit whose lower bound is beyond
-// t_max is dropped. If the bounds of two hits overlap, either may be nearer: the hit that is not kept leaves as a
-// doubt. So does a test without a verdict. Distances are positive floats, which compare as integers. At first t_max is
-// the user's: a hit that may lie beyond it is a doubt. A ray with any_hit ends with its first certain hit.
+// t_max is dropped. If the bounds of two hits overlap, either may be nearer: the hit that is not kept becomes a doubt.
+// A test without a sure verdict is a doubt, too. Distances are positive floats, which compare as integers. At first,
+// t_max is the user's; a hit that may lie beyond it is a doubt. A ray with any_hit ends with its first certain hit.
 //
-// Credits count tests in flight, starting at test_i, and waiting doubts: tests_allowed_o is low while all Queue are
-// used. So neither a test nor a line from memory ever waits for a doubt to leave.
+// There are Queue credits. A test takes one at test_i, and returns it when it ends; if it leaves a doubt, when the
+// doubt leaves. tests_allowed_o is low while no credit is free. So no test and no line from memory waits for doubts.
 //
-// With Exact no doubt leaves: open_o passes each to exact_resolver in the clock in which its test ends. If a doubt is
-// the ray's nearest hit, its triangle is tested again with settle_i, as the ray's last test. This hit is kept whatever
-// the verdict: with t and P if it is certain, else with NoT.
+// With Exact, no doubt leaves the core: open_o passes each to exact_resolver in the clock in which it arises. If a
+// doubt turns out to be the ray's nearest hit, its triangle is tested again with settle_i, as the ray's last test. This
+// hit is kept whatever the verdict: with t and P if the test is sure, else with NoT as its t_error.
 //
-// Throughput: a result a clock; each is compared in the clock after it came. A ray's tests are over when as many
-// results have been compared as there were clocks with test_i.
+// Throughput: a result a clock; each is compared in the clock after it arrives. A ray has tests in flight until as many
+// of its results have been compared as it had clocks with test_i.
 module closest_hit
   import ray_core_pkg::*;
 #(
@@ -39,7 +39,7 @@ module closest_hit
   input  logic [RayWidth-1:0]     result_ray_i,
   input  logic [31:0]             result_tag_i,  // tag of result_ray_i, for doubts
   input  verdict_t                result_i,
-  // A ray's t_max, a clock after its number; exact_o in the same clock. ended: the ray has any_hit and a hit, or failed
+  // t_max of a ray, a clock after its number (exact_o: in the same clock); ended: it has any_hit and a hit, or failed
   input  logic [Rays-1:0]         failed_i,
   input  logic [RayWidth-1:0]     traversal_ray_i,
   output logic [30:0]             traversal_t_max_o,
@@ -95,7 +95,7 @@ module closest_hit
   assign exact_o.line        = AddressWidth'(nearest_triangle[exact_ray_i]);
   assign exact_o.t_max       = t_max[exact_ray_i];
 
-  // ---- Read: the result, and the nearest so far
+  // ---- Read: the result, and the ray's nearest hit so far
 
   logic good, is_over_q, is_sure_q, is_vague_q, replace, forward, old_found_q, settled_q;
   logic [RayWidth-1:0] ray_q;
@@ -250,7 +250,7 @@ module closest_hit
     if (is_over_q && !same) counts[ray_q] <= counts[ray_q] - 1'b1;
   end
 
-  // ---- The end
+  // ---- The nearest hit, for a ray that ends
 
   assign end_o.found    = found_q[end_ray_i];
   assign end_o.triangle = nearest_triangle[end_ray_i];

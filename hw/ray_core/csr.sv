@@ -1,6 +1,6 @@
-// Control and status registers of the ray core, on AXI4-Lite: what to draw, from which memory, counters, flags.
+// Control and status registers of the ray core, on AXI4-Lite: camera, rectangle, memory addresses, counters, flags.
 //
-// registers.md has the words, bits, and what is refused while the core is busy; csr_pkg is generated from it. One write
+// registers.md lists words, bits and what is refused while the core is busy; csr_pkg is generated from it. One write
 // and one read at a time; no AXI output depends on an input in the same clock. interrupt_o: an enabled flag is high.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
 module csr
@@ -111,7 +111,7 @@ module csr
   assign rewind_o     = command & commands[CommandRewind];
   assign clear        = command & commands[CommandClear];
 
-  // ---- Plain registers
+  // ---- Plain registers: hold what was written, in the bits of PlainBits
 
   logic [31:0][31:0] words;  // by word number
 

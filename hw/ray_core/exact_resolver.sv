@@ -2,17 +2,17 @@
 //
 // For each ray it keeps the candidate: the nearest of the ray's doubts that are hits.
 //
-//   a doubt   Does the ray hit it (asked unless it is certain), and is it nearer than the candidate, if there is one?
-//             If so, the doubt becomes the candidate.
+//   a doubt   Does the ray hit its triangle (asked unless this is certain), and is the hit nearer than the candidate,
+//             if there is one? If so, the doubt becomes the candidate.
 //   settling  When nothing else is left to do for the ray: is the candidate nearer than closest_hit's certain hit or,
 //             without such a hit, than the user's t_max? If so, its triangle is tested once more, for t and P.
 //
-// Of hits at the same t, the hit of lower rank is nearer. Corners are read from triangle lines, as for tests. Latency:
-// exact_unit's plus 8 clocks (for a question), plus up to two reads through the triangle cache. A ray has one question
-// at a time; questions of different rays are spread over Units exact_units. Doubts of a ray that has ended are dropped.
+// Of hits at the same t, the hit on the triangle of lower rank is nearer. Latency: exact_unit's plus 8 clocks (a
+// question, without its one or two reads of the triangle cache). A ray has one question at a time; Units exact_units
+// share the rays' questions. Doubts of an ended ray are dropped.
 //
-// closest_hit's credits reserve a place in the queue here for every doubt. So no test waits for the resolver. (It would
-// be a deadlock: the resolver may wait for lines that come after the test's.)
+// closest_hit's credits reserve a place in this queue for every doubt, so no test waits for the resolver. (Otherwise a
+// test could wait for the resolver, and the resolver for a line behind that test's line: a deadlock.)
 module exact_resolver
   import ray_core_pkg::*;
 #(
@@ -36,10 +36,10 @@ module exact_resolver
   // idle_i: rays without nodes, leaves and tests; busy_o: rays that have doubts or a candidate
   input  logic [Rays-1:0]         idle_i,
   output logic [Rays-1:0]         busy_o,
-  // the current ray; what is known of it, in the same clock
+  // ctx_o: the ray that the current question is about; known_i: what closest_hit knows of it, in the same clock
   output logic [RayWidth-1:0]     ctx_o,
   input  known_t                  known_i,
-  // requests for the current ray's lines: `exact` ones for this module, others for a candidate's last test
+  // requests for triangle lines for this ray; exact: 1 for a question's corners, 0 for a candidate's last test
   output triangle_request_t       request_o,
   input  logic                    request_ready_i,
   input  triangle_line_t          line_i,
@@ -90,8 +90,8 @@ module exact_resolver
 
   // ---- For each ray: whether its doubts wait, its candidate, and whether a question about it is open
 
-  // Doubts are numbered as they come, and leave in that order: when a ray's last doubt leaves, none of its doubts
-  // waits. Numbers wrap, but there are more numbers than places in the queue.
+  // Doubts are numbered as they come, and leave in that order. So a ray has no doubt in the queue once the ray's latest
+  // doubt has left. Numbers wrap, but there are more numbers than places in the queue.
   logic [CountWidth-1:0] pushed_q, popped_q;  // doubts that came and left
   logic [CountWidth-1:0] lasts[Rays];  // number of the ray's last doubt
   logic [AddressWidth-1:0] candidates[Rays];  // line of the ray's candidate
@@ -216,8 +216,8 @@ module exact_resolver
       is_hit_q   <= settle | queued_hit;
       line_q     <= settle ? candidates[ready_ctx] : queued_line;
     end
-    // A line with an error, and the test of a candidate, end the question in StateAnswer, a clock later. So the cache's
-    // outputs, which come late in a clock, reach only state_q in that clock.
+    // nearer_q = 0 makes StateAnswer end the question, after a line with an error and after the request of a
+    // candidate's test. So line_i.error, which comes late in a clock, decides only state_q in that clock.
     if (state_q == StateWait || state_q == StateTest) nearer_q <= 1'b0;
     if (state_q == StateLook) begin
       ended_q      <= known_i.ended;
@@ -228,7 +228,7 @@ module exact_resolver
       against_q <= against;
       lacks_q   <= against == exact_pkg::AgainstOther;  // the other triangle's line is read first
     end
-    // The cache's outputs come too late in a clock to enable so many registers.
+    // The cache's outputs come too late to enable so many registers: StateWait loads corners_q in each clock.
     if (state_q == StateFetch) {other_q, other_rank_q} <= {corners_q, rank_q};
     if (state_q == StateWait) begin
       corners_q <= line_i.line[TriangleCorners+:CornersWidth];

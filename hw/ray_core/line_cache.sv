@@ -2,19 +2,19 @@
 //
 // The lowest bits of a line's number select its set. A miss requests the line from memory and takes a way of its set
 // that waits for no line: the first after the way that was used last. Until the line comes, further requests for it
-// join the miss as its targets. If all ways of the set wait for other lines, the request waits.
+// wait with the first, as its targets. If all ways of the set wait for other lines, the request waits.
 //
 //   ask      a request is taken; the tags of its set are read
-//   compare  these tags are compared with the line's
+//   compare  these tags are compared with the tag of the requested line
 //   look up  a hit's line is read, a miss asks memory
 //   queue    hits wait for a clock in which no line from memory leaves
 //
 // A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken, and is dropped
 // if its set has no way for it or memory takes no request. outstanding_o: a prefetch is being looked up.
 //
-// A line from memory is taken when the previous one has left, or leaves for its last target. It is written, and its
-// latest target is looked up. From the next clock the line goes to its targets, one per clock, the latest first. While
-// it leaves, hits wait in their queue; requests are still looked up. A line with an error goes to its targets with
+// A line from memory is taken when the previous line has gone to its last target, or goes there now. It is written to
+// the cache. From the next clock on it goes to its targets, one per clock, the latest first. Meanwhile hits wait in
+// their queue, but requests are still looked up. A line with an error goes to its targets with
 // error_o, and is not kept. Lines leave in any order, each with the ray that asked. Throughput: a line a clock.
 // Latency: 5 for a hit (clocks from its request to its line, if the queue is empty and no line from memory leaves).
 //
@@ -127,7 +127,7 @@ module line_cache
     .data_o(set_tags)
   );
 
-  // ---- Compare: same, valid and pending are for the state of the ways after this clock
+  // ---- Compare: same, valid_ways_q and pending_ways_q take into account what the look-up changes in this clock
 
   logic [SetWidth-1:0] fill_set;
   logic [WayWidth-1:0] fill_way;

@@ -1,13 +1,13 @@
 // Memory port of the ray core: two caches and their reads.
 //
 // A read has an id, {is a triangle's, cache entry}; its line may come back at any time and in any order. Both caches
-// can give a line in the same clock. A line with an error goes to the rays that wait for it and is not kept.
+// can deliver a line in the same clock. A line with an error goes to the rays that wait for it and is not kept.
 //
 // A node to be prefetched (prefetch_i) is looked up in a clock in which no node is asked for, and dropped if the queue
 // of prefetches is full. Its line may come after the last ray has ended: while outstanding_o is high, memory must not
 // change and the caches must not be emptied.
 //
-// Lines leave with step_o, which is high in one of Clocks clocks. line_ready_o does not depend on results.
+// Lines leave when step_o is high, in one of every Clocks clocks. line_ready_o never waits for results to be taken.
 module memory_subsystem
   import ray_core_pkg::*;
 #(

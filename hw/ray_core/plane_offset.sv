@@ -2,8 +2,8 @@
 // Latency: 1 clock from q_i and step_i (a register after the product). from_i and back_i come a clock later, in the
 // clock in which plane_o is valid.
 //
-// Structural kinds: a carry-save tree with a row for each bit of q, a register for its two words, and one adder, which
-// computes the difference as floor((256 from + 255 - q s) / 256). Behavioural uses `*`.
+// Structural kinds: a carry-save tree with a row for each bit of q, a register for the tree's two output words, and one
+// adder, which computes the difference as floor((256 from + 255 - q s) / 256). Behavioural uses `*`.
 module plane_offset #(
   parameter int unsigned Width = 33,  // width of s
   parameter int unsigned PlaneWidth = 36,

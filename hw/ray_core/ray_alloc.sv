@@ -1,8 +1,8 @@
 // Entry of rays: reciprocals of a ray's direction, and a context.
 //
-// A ray waits in a queue for its reciprocals, a division's latency, and then for a context: start_ctx_o is the lowest
-// free one. So no context is held during a division. Reciprocals are rounded to nearest.
-// Throughput: a ray in Clocks clocks; with three dividers if Clocks is 1, else (7 or more) with one.
+// A ray waits in a queue: first for its reciprocals, which take the latency of a division, then for a free context.
+// start_ctx_o is the lowest free context. So no context is held during a division. Reciprocals are rounded to nearest.
+// Throughput: a ray in Clocks clocks; there are three dividers if Clocks is 1, one if it is 7 or more.
 module ray_alloc #(
   parameter int unsigned Rays  = 64,  // number of contexts
   parameter int unsigned Width = 32,  // width of a ray's data, without the reciprocals

@@ -55,8 +55,8 @@ module ray_core
   output logic [NumEvents-1:0]    events_o  // events of the clock before, see event_e
 );
 
-  // ---- Rays that start, and their contexts: the data of a ray for a node, a triangle or a test come from memories, a
-  // clock after the number of its context
+  // ---- Rays that start, and their contexts. Memories hold what is needed of a ray for nodes, triangles and tests: a
+  // read with the number of its context gives these data a clock later
 
   logic start_valid, start_fire, ending, step;
   logic [RayWidth-1:0]
@@ -331,8 +331,8 @@ module ray_core
     .result_o
   );
 
-  // ---- Errors: the first error of each ray. A ray counts as failed two clocks after its error, at the latest when its
-  // end is reported, until another ray starts in its context. While abort_i is high, all rays in the core fail.
+  // ---- Errors: the first error of each ray. A ray counts as failed from two clocks after its error (its end is not
+  // reported earlier) until another ray starts in its context. While abort_i is high, all rays in the core fail.
 
   logic [Rays-1:0][2:0] errors_q;
   logic node_error_q, triangle_error_q, cycle_q;

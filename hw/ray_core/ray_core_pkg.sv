@@ -53,7 +53,7 @@ package ray_core_pkg;
     logic [Children*ChildWidth-1:0] entries;
   } group_t;
 
-  // Returns whether a child certainly begins beyond t_max, binary32 without its sign. (Such words compare as integers.)
+  // Returns whether a child's box surely begins beyond t_max (binary32 without sign). Such words compare as integers.
   function automatic logic is_beyond(logic [EnterWidth-1:0] enter, logic [30:0] t_max);
     is_beyond = t_max < {enter, {31 - EnterWidth{1'b0}}};
   endfunction
@@ -61,7 +61,7 @@ package ray_core_pkg;
   // Clocks from the edge that takes a node to the edge after which its group is at the output, see box_unit.
   localparam int unsigned BoxLatency = 21;
 
-  // ---- Numbers inside box_unit, in units of 2**(E - UnitBits); in the node, t is below 2**E
+  // ---- Numbers inside box_unit, in units of 2**(E - UnitBits), where 2**E is above all t in the node (see box_unit)
 
   localparam int unsigned UnitBits = 22;
   localparam int unsigned StepWidth = 33;  // width of s, up to 2**32, in 256ths of a unit

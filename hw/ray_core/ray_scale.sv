@@ -1,6 +1,6 @@
-// Scale of a ray in a node: 2**E, a bound of t there, and caps of 1 / I_k for planes that are too far apart.
-// Latency: 2 clocks: registers after the reach along each axis and after E. All inputs come in the same clock. Steps 1
-// and 3 of box_unit's header derive the formulas. Exponents have binary32's bias.
+// Scale of a ray in a node: 2**E, a bound of t there, and caps of 1 / I_k that limit the distance between planes.
+// Latency: 2 clocks: registers after the bound of t of each axis and after E. All inputs come in the same clock. Steps
+// 1 and 3 of the proof in box_unit's header derive the formulas. Exponents have binary32's bias.
 //
 // In:  distances_i  exponents of D_k = origin_k - O_k, eight bits per axis, x lowest
 //      inverse_i    1 / I_k, binary32, x lowest
@@ -25,7 +25,7 @@ module ray_scale
     smaller = (a < b) ? a : b;
   endfunction
 
-  // ---- Reach
+  // ---- Reach: the exponent of the bound of t that each axis gives
 
   logic signed [10:0] t_max_q;
   logic [95:0] reach_inverse_q, inverse_q;

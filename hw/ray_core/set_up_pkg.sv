@@ -1,4 +1,4 @@
-// Shared by triangle_test and the users of its records: the format, and the errors of its planes.
+// Shared by triangle_test and users of its verdicts: number format, error bounds of planes and of hits.
 package set_up_pkg;
 
   // verilator lint_off UNUSEDPARAM
@@ -12,7 +12,7 @@ package set_up_pkg;
 
   localparam int unsigned PlaneErrorWidth = 4;
 
-  // Limit of normal_error and distance_error of a usable plane, and of t_error + normal_error of a usable hit.
+  // Largest normal_error and distance_error of a usable plane, and largest t_error + normal_error of a usable hit.
   localparam int unsigned MostPlaneError = 14;
 
   // For a hit with is_good_hit, fewer than 2**t_error_exponent binary32 numbers lie between its t and the exact t.
@@ -67,7 +67,7 @@ package set_up_pkg;
     logic [PlaneErrorWidth-1:0] distance_error;
   } plane_t;
 
-  // Returns the plane's errors, from the largest exponent fields of A (`vertex`), N and N's terms, and from d's.
+  // Returns a plane's errors from exponent fields: that of d, and the largest of A (`vertex`), of N, of N's terms.
   function automatic plane_t plane_of(logic [ExpWidth-1:0] vertex, logic [ExpWidth-1:0] normal,
                                       logic [ExpWidth-1:0] terms, logic [ExpWidth-1:0] d);
     localparam logic [ExpWidth+1:0] Bias = (ExpWidth + 2)'(2 ** (ExpWidth - 1) - 1);

@@ -1,9 +1,9 @@
-// Slab set-up: bounds of a grid's first plane, and the step.
-// Latency: 1 clock; |a| and s are registered. Units are 2**(E - 22). Box_unit's header derives the formulas (2 to 4).
+// Slab set-up: bounds of the plane q = 0, and the step.
+// Latency: 1 clock; |a| and s are registered. Units are 2**(E - 22). Formulas: steps 2 to 4 of box_unit's proof.
 //
 // In:  product_i    a = D / I, binary32, any value
 //      inverse_i    1 / |I|, limited to the cap; exponent_i, cap_i: E and the cap's exponent, with binary32's bias
-//      is_capped_i  the inverse was above the cap; is_open_i: in addition, binary32 cannot represent the cap
+//      is_capped_i  inverse_i is the cap, as 1 / |I| is above it; is_open_i: in addition, binary32 cannot represent it
 // Out: planes_o     a - r, lowest, and a + r, two's complement, in units; step_o: s in 256ths of a unit
 module slab_setup
   import ray_core_pkg::*;

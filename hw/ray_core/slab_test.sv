@@ -61,7 +61,7 @@ module slab_test
   // ---- Enter: the largest near plane; leave: the smallest far one
 
   // verilator lint_off UNUSEDSIGNAL
-  // An enter of at most t_max has no more than UnitBits + 1 bits.
+  // Only an enter_q of at most t_max is used, which has no more than UnitBits + 1 bits.
   plane_t enter_q, leave_q;
   // verilator lint_on UNUSEDSIGNAL
 

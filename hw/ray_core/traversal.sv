@@ -1,15 +1,15 @@
 // Traversal of the tree: short stacks, and which ray goes next.
 //
 // A stack entry is a group: the children of a node that a ray enters and has not visited yet, the nearest on top. In
-// each clock one ray is picked, of those that neither wait for a node nor have leaves to be fetched. The ray's groups
-// are dropped if their nearest child lies beyond t_max. Then the nearest child of its topmost group is requested. Rays
-// without tests in flight have priority, as their t_max is final for now; so has a ray that starts.
+// each clock one ray is picked, of those that neither wait for a node nor have leaves to be fetched. Its topmost groups
+// are dropped while their nearest child lies beyond t_max. Then the topmost group's nearest child is requested. Rays
+// with tests in flight, whose t_max may still fall, are picked after other rays and rays that start.
 //
-// Each ray has Depth groups of its own. Levels - Depth more groups are shared, held by one ray at a time on top of its
-// own. A ray takes the shared groups when it requests a node with its own stack full, and overflow_o is high. It holds
-// them until its own stack has room again. Other rays that need them wait. The holder waits for no other ray, so each
-// ray gets its turn. Only the topmost shared group is examined. It is not dropped for t_max, as box_unit leaves out
-// boxes beyond t_max.
+// Each ray has Depth groups of its own. Levels - Depth more groups are shared: one ray at a time holds them, on top of
+// its own. A ray takes them when it requests a node and its own stack stays full; overflow_o is high in that clock. It
+// holds them until its own stack has room again. Other rays that need them wait. The holder waits for no other ray, so
+// each ray gets its turn. Of shared groups, only the topmost is examined. It is not dropped for t_max: if its children
+// lie beyond t_max, box_unit finds none of their children.
 //
 // In a tree a ray enters each node once, and has at most one group for each level. A ray that is about to enter more
 // than lines_i nodes, or that has Levels groups, is in a cycle: its stack is dropped, and cycle_o is high.
@@ -19,7 +19,7 @@
 //   read     its groups and its t_max
 //   choose   the group
 //   fetch    the group from memory
-//   ask      request the line of its nearest child or, in a clock without a group, the root's for a ray that starts
+//   ask      request the line of the group's nearest child; in a clock without a group, the root for a ray that starts
 module traversal
   import ray_core_pkg::*;
 #(
@@ -75,7 +75,7 @@ module traversal
 
   assign traversing_o = busy_q | waiting_q;
 
-  // Return the address of a ray's group in u_groups, and the address of a shared group in shared_masks.
+  // Return addresses of a ray's group of level `level`: in u_groups and, if the group is shared, in shared_masks.
   function automatic logic [StackWidth-1:0] stack_address(logic [RayWidth-1:0] ctx,
                                                           logic [LevelWidth-1:0] level);
     stack_address = StackWidth'(level) + ((level < LevelWidth'(Depth))
@@ -96,7 +96,7 @@ module traversal
     end
   endfunction
 
-  // ---- Gather: rays picked in this clock or the one before are left out
+  // ---- Gather: the rays that may be picked. A ray that is picked in this clock is masked by busy_q in the next
 
   logic [Rays-1:0] ready, sure, ready_q;
 
@@ -132,7 +132,7 @@ module traversal
     end
   end
 
-  // ---- Read: for each level of the stack, the waiting entries of the group and the `enter` of the nearest
+  // ---- Read: for each group of the picked ray, the entries that wait and the `enter` of the nearest of these
 
   logic push, asked_q, choosing_q, ended_q, next_valid_q;
   logic [LevelWidth-1:0] box_level, level_q, chosen, left, asked_level_q, next_level_q;

@@ -1,8 +1,8 @@
 // Triangle test: polygon record of a triangle, and a ray's verdict. The record is relative to the origin; binary32.
 //
-// Throughput: a triangle in Clocks clocks. Latency: 48 with Clocks = 1 (clocks from triangle_i to its verdict). Then
-// cores are pipelined. Else (7 or more) words share few cores: a step lasts from one step_i to the next, and registers
-// advance once in a step. Results are the same. No stalls.
+// Throughput: a triangle in Clocks clocks. Latency: 48 with Clocks = 1 (clocks from triangle_i to its verdict). In this
+// case, cores are pipelined. With Clocks of 7 or more, words share few cores: a step lasts from one step_i to the next,
+// and registers advance once in a step. Results are the same. No stalls.
 //
 //   operation   cores                                                     sums and products
 //   1           vertices A, B, C minus O; the edges B-A, C-B, A-C         18
@@ -13,9 +13,9 @@
 //   then        the decision, and t = d / V, P_k = (d I_k) / V            see hit_decision; 4 dividers, or one
 //
 // An operation takes 3 clocks, or a step. triangle_i and the context of its ray, ctx_i, come with step_i. origin_i and
-// both ids of this ray come in the next clock and stay until the next step_i. direction_ctx_o is the context whose
-// direction is needed. direction_i must be its direction from the clock after a step_i until the next step_i. A verdict
-// and its P are valid for a clock.
+// skip_id_i and source_id_i of this ray come in the next clock and stay until the next step_i. direction_ctx_o names a
+// context at each step_i: direction_i must be its direction from the next clock until the next step_i. A verdict and
+// its P are valid for a clock.
 //
 // The record has hit_test_pkg's format. It differs in two ways from a record that a host computes in double precision:
 //   * Bounds are about twice as large, because they include the errors of words computed in binary32 (see below).
@@ -196,7 +196,7 @@ module triangle_test
     .result_o(differences)
   );
 
-  // ---- Sum: x + y of the edges' terms, then + z; x + y of d, then + z. Bounds are ready an operation before d
+  // ---- Sum: x + y, then + z, of the edges' terms (for the bounds) and of d. Bounds are ready an operation before d
 
   logic [95:0] vertex, shares, last_terms, early_bounds, bounds;  // shares: N_k A_k
   logic [31:0] last_share, d, good_d;
@@ -252,7 +252,7 @@ module triangle_test
   );
   assign d = sums[32*7+:32];
 
-  // The plane's errors, from exponents: those of A, N and N's terms are delayed to come with d's
+  // The plane's errors follow from exponents. Those of A, of N and of N's terms are delayed until d is there
   delay_line #(
     .Width(12 * 32 + 24),
     .Depth(3 * Operation)
@@ -320,7 +320,7 @@ module triangle_test
              verdict_o.distance_error})
   );
 
-  // ---- Divide: t and P, at once; or t, then P's words
+  // ---- Divide: four dividers compute t and P at once; a single one computes t, then P's words
 
   localparam int unsigned Dividers = (Clocks == 1) ? 4 : 1;
   logic [4*32-1:0] dividends_q, quotients_q;
