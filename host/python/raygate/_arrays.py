@@ -53,7 +53,7 @@ def rays(origins: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Array, Arra
 
 def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
     """Raises InputError unless all numbers are finite with a magnitude of at most 2^exponent. `each`: a word for a row."""
-    wrong = ~(np.abs(array) <= 2.0 ** exponent).all(axis=tuple(range(1, array.ndim)))
+    wrong = ~(np.abs(array) <= np.float64(2.0 ** exponent)).all(axis=tuple(range(1, array.ndim)))
     if wrong.any():
         row = int(wrong.argmax())
         raise InputError(f"{name}: found {array[row].tolist()} in {each} {row}, expected finite numbers of at most 2^{exponent}")

@@ -387,6 +387,9 @@ class Arrays(unittest.TestCase):
         for expected, call in (
                 ("face 1, expected numbers from 0 to 7",
                  lambda: raygate.Scene(self.VERTICES, [[0, 1, 2], [0, 1, 8]])),
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(self.cube.closest(np.float32([3e38, 0, 0]))["x"].tolist(), [1])
                 ("faces: found None", lambda: raygate.Scene(np.zeros((3, 3)))),
                 ("^vertices: found a value of type Random, expected numbers$", lambda: raygate.Scene(random.Random())),
                 (r"^vertices: found \[0.0, nan, 0.0\] in vertex 1, expected finite",
