@@ -80,7 +80,7 @@ def vertex_numbers(faces: npt.ArrayLike | None, count: int, name: str = "faces")
         raise InputError(f"{name}: found None, expected the numbers of three vertices in each row")
     array = plain(name, faces)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind == "f" or not len(array):
-        raise InputError(f"{name}: found an array of {array.dtype} of shape {array.shape}, expected whole numbers, shape (M, 3)")
+        raise InputError(f"{name}: found an array of {array.dtype} of shape {array.shape}, expected whole numbers, shape (M, 3), M > 0")
     wrong = ((array < 0) | (array >= count)).any(axis=1)
     if wrong.any():
         row = wrong.argmax()

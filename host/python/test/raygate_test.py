@@ -425,6 +425,8 @@ class Render(unittest.TestCase):
                 self.assertTrue(path.read_bytes().startswith(start))
             self.assertEqual((pathlib.Path(folder) / "a.png").read_bytes(), picture._repr_png_())
         self.assertNotEqual(picture.png(exposure=1), picture.png())
+                (r"^faces: found an array of int64 of shape \(0, 3\), expected .*, M > 0$",
+                 lambda: raygate.Scene(self.VERTICES, np.zeros((0, 3), int))),
         with self.assertRaisesRegex(ValueError, "ends in .png or .exr"):
             picture.save("a.jpg")
         self.assertRegex(raygate.__version__, r"^\d+\.\d+\.\d+$")
