@@ -16,8 +16,8 @@ Scene load(const SceneFile& file, const LoadOptions& options, const EnvironmentS
   std::error_code ignored;
   if (file.obj != file.file && !std::filesystem::exists(file.obj, ignored)) {
     throw InputError(file.file.string() + ": found no " + file.obj.lexically_normal().string() +
-                     ", expected the scene that it is about; `make verilate` makes those of "
-                     "scenes/");
+                     ", expected this model, or \"obj\" to name another; `make verilate` "
+                     "makes those of scenes/");
   }
   Scene scene = load_scene(file, options);
   require_numbers(scene, file.file);

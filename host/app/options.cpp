@@ -26,7 +26,7 @@ constexpr const char* kAbout =
     R"(Usage: ./render SCENE [options]     SCENE.obj, .glb, .gltf, .ply or .stl, or a
                                     SCENE.json with its camera and lights
 Renders a scene. A ray-tracing unit, simulated from its SystemVerilog, finds the
-hits; --engine cpu gives identical hits without simulation, faster.
+hits if the build has it; --engine cpu finds the same ones in C++, faster.
 Writes SCENE.exr and SCENE.png into the current folder.
 
   ./render scenes/cornell.obj --engine cpu

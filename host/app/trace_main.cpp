@@ -41,9 +41,10 @@ first line of names is skipped, or refused if it has these in another order:
 
 constexpr const char* kFooter =
     R"(Numbers count from 0. A ray without a hit, as with a direction of 0, has
-triangle -1, t inf, and nan elsewhere. Answers are exact for the numbers as
-given, in binary64. The summary reports rays and corners that had to be rounded:
-to binary32 by --engine rtl and model, and in meshes with instances.
+triangle -1, t inf, and nan elsewhere. Answers are exact for binary64 numbers,
+or for rounded ones, which the summary counts: in binary32 by --engine rtl and
+model, and in meshes with instances; ray origins in binary64, relative to the
+scene's middle, unless all vertices are binary32 numbers around 0.
 
 Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene, the rays or the output cannot be used; 130 interrupted.)";
@@ -75,15 +76,10 @@ std::string summary(const TraceOptions& options, const CornerRounding& rounding,
                     const TraceCounts& counts, double seconds) {
   std::string text = format_count(counts.rays, "ray") + ", " + format_count(counts.hits, "hit") +
                      ", " + format_duration(seconds);
-  if (seconds > 0.0) {
-    text += ", " +
-            format_count(static_cast<std::uint64_t>(static_cast<double>(counts.rays) / seconds)) +
-            " rays/s";
-  }
+  const double rate = static_cast<double>(counts.rays) / seconds;
+  if (seconds > 0.0) text += ", " + format_count(static_cast<std::uint64_t>(rate)) + " rays/s";
   text += ", engine " + to_string(options.engine.engine) + "\n";
-  if (counts.rounded > 0) {
-    text += format_count(counts.rounded, "ray") + " rounded\n";
-  }
+  if (counts.rounded > 0) text += format_count(counts.rounded, "ray") + " rounded\n";
   if (rounding.corners > 0) {
     text += format_count(rounding.corners, "corner") + " rounded, by up to " +
             format_number(rounding.most) + "\n";

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -109,9 +110,11 @@ nb::object text_of(const std::string& text) {
       PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<Py_ssize_t>(text.size())));
 }
 
-Texts texts_of(const std::vector<std::string>& texts) {
+nb::object text_of(const Material& material) { return text_of(material.name); }
+template <class Element>
+Texts texts_of(const std::vector<Element>& elements) {
   Texts list;
-  for (const std::string& text : texts) list.append(text_of(text));
+  for (const Element& element : elements) list.append(text_of(element));
   return list;
 }
 
@@ -139,11 +142,10 @@ Bytes computed_rows(std::size_t count, std::size_t interval, const Compute& comp
 /// Returns the result of `encode`, which runs without Python's lock.
 template <class Encode>
 nb::bytes python_bytes(const Encode& encode) {
-  std::string text;
-  {
+  const std::string text = [&] {
     const nb::gil_scoped_release release;
-    text = encode();
-  }
+    return encode();
+  }();
   return nb::bytes(text.data(), text.size());
 }
 
@@ -189,11 +191,7 @@ class PythonScene {
     }
     return numbers;
   }
-  [[nodiscard]] Texts material_names() const {
-    Texts names;
-    for (const Material& material : scene_.materials) names.append(text_of(material.name));
-    return names;
-  }
+  [[nodiscard]] std::uint64_t rounded_rays() const { return rounded_rays_; }
 
   /// Returns the rows of HitTable as bytes, and the names and types of their fields. Origins,
   /// directions and limits must be equally many.
@@ -231,11 +229,13 @@ class PythonScene {
     rows->reserve(count * answers.fields().size() * 8);
     {
       const nb::gil_scoped_release release;
-      (void)trace(read, asked, *bvh_, answers, intersectors(),
-                  static_cast<unsigned>(keywords.threads), [&](std::string_view bytes) {
-                    rows->append(bytes);
-                    is_new_round = true;
-                  });
+      const auto write = [&](std::string_view bytes) {
+        rows->append(bytes);
+        is_new_round = true;
+      };
+      rounded_rays_ += trace(read, asked, *bvh_, answers, intersectors(),
+                             static_cast<unsigned>(keywords.threads), write)
+                           .rounded;
     }
     return {bytes_of(rows, rows->data(), rows->size()), answers.fields()};
   }
@@ -332,6 +332,7 @@ class PythonScene {
   Scene scene_;
   std::unique_ptr<Bvh> bvh_;
   std::unique_ptr<PreparedScene> prepared_;
+  mutable std::atomic<std::uint64_t> rounded_rays_ = 0;
   mutable std::once_flag has_winding_;
   mutable std::optional<WindingNumbers> winding_;
 };
@@ -445,8 +446,9 @@ NB_MODULE(_raygate, m) {
       .def_prop_ro(
           "objects", [](const PythonScene& s) { return texts_of(s.scene().objects); },
           "Names of the objects (`o` and `g` of an OBJ file), by the numbers in hits[\"object\"].")
-      .def_prop_ro("materials", &PythonScene::material_names,
-                   "Names of the materials, by the numbers in hits[\"material\"].")
+      .def_prop_ro(
+          "materials", [](const PythonScene& s) { return texts_of(s.scene().materials); },
+          "Names of the materials, by the numbers in hits[\"material\"].")
       .def_prop_ro("degenerate_faces", &PythonScene::degenerate_faces,
                    "Numbers of the triangles without area.")
       .def_prop_ro(
@@ -459,6 +461,8 @@ NB_MODULE(_raygate, m) {
           },
           "Number of vertices that are not stored as in the file, and the largest error of a "
           "coordinate. Files of glTF, meshes with instances and numbers below 2^-97 are rounded.")
+      .def_prop_ro("rounded_rays", &PythonScene::rounded_rays,
+                   "Number of rays of all calls so far that were rounded: see trace().")
       .def("_trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
            "columns"_a, "settings"_a)
       .def("_winding", &PythonScene::winding_numbers, "points"_a, "crossings"_a, "direction"_a)

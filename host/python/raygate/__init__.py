@@ -10,8 +10,8 @@
     picture["color"]                               # (480, 640, 4), scene-linear
     picture.save("teapot.png")
 
-Which triangles a ray hits, and in which order, is exact for float64 vertices and rays. raygate.trimesh and raygate.open3d
-answer as the ray casters of these libraries do. raygate.float is IEEE 754 arithmetic in any small format.
+Which triangles a ray hits, and in which order, is exact for float64 vertices and rays; help(Scene.trace) says when origins
+are rounded. raygate.trimesh and raygate.open3d answer as the ray casters of these libraries do. raygate.float is IEEE 754 arithmetic in any small format.
 """
 
 from . import _raygate, float, open3d, trimesh  # below, `float` is the module, not Python's class

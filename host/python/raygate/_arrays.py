@@ -53,7 +53,7 @@ def rays(origins: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Array, Arra
 
 def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
     """Raises InputError unless all numbers are finite with a magnitude of at most 2^exponent. `each`: a word for a row."""
-    wrong = ~(np.abs(array) <= 2.0 ** exponent).all(axis=tuple(range(1, array.ndim)))
+    wrong = ~(np.abs(array) <= np.float64(2.0 ** exponent)).all(axis=tuple(range(1, array.ndim)))
     if wrong.any():
         row = int(wrong.argmax())
         raise InputError(f"{name}: found {array[row].tolist()} in {each} {row}, expected finite numbers of at most 2^{exponent}")
@@ -80,7 +80,7 @@ def vertex_numbers(faces: npt.ArrayLike | None, count: int, name: str = "faces")
         raise InputError(f"{name}: found None, expected the numbers of three vertices in each row")
     array = plain(name, faces)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind == "f" or not len(array):
-        raise InputError(f"{name}: found an array of {array.dtype} of shape {array.shape}, expected whole numbers, shape (M, 3)")
+        raise InputError(f"{name}: found an array of {array.dtype} of shape {array.shape}, expected whole numbers, shape (M, 3), M > 0")
     wrong = ((array < 0) | (array >= count)).any(axis=1)
     if wrong.any():
         row = wrong.argmax()

@@ -118,17 +118,18 @@ class Scene(_raygate.Scene):
         """Returns the hits of rays: a structured array with a field, int64 or float64, for each answer.
 
         origins, directions: shape (N, 3), or one vector for all rays, of shape (3,) or (1, 3); float64 in C order is read without a copy.
-        Hits are at origin + t direction with 0 < t < limit, exactly, in float64. A direction may have any length; (0, 0, 0) hits nothing.
+        Hits are at origin + t direction with 0 < t < limit, exactly, in float64. But origins are rounded to float64 relative to the scene's
+        middle, unless all vertices are float32 numbers around 0: see rounded_rays. Directions have any length; (0, 0, 0) hits nothing.
         limits: shape (N,), or one number for all rays; none by default. threads: 1 to 1024, one per processor by default. hits:
         "nearest", a row for each ray; "any", a row for each ray that says whether it hits anything (faster); "all", a row for each hit of
         each ray, near before far, at equal t the lower triangle first.
 
         columns: one name or several; by default all but material and side. "any" has only ray, hit and doubts, by default ray
         and hit. ray, triangle, object, material: numbers from 0. hit: 1 or 0. t: relative error at most 2^-33. point (fields x,
-        y, z): in the scene's coordinates. uv (u, v): the point is (1 - u - v) A + u B + v C; error at most 2^-34. normal (nx,
-        ny, nz): (B - A) x (C - A) divided by its length. side: the exact sign of direction . normal, -1 for the front, 1 for
-        the back, 0 for a miss. doubts: tests of the ray that exact arithmetic decided. A miss has triangle, object and material
-        -1, t inf and other float64 fields nan. The t of a hit is inf if it overflows: tell misses by `hit` or `triangle`.
+        y, z): in the scene's coordinates; errors at most 2^-33 |t direction|, plus rounding. uv (u, v): the point is (1 - u - v) A + u B +
+        v C; error at most 2^-34. normal (nx, ny, nz): (B - A) x (C - A) divided by its length. side: the exact sign of direction . normal,
+        -1 for the front, 1 for the back, 0 for a miss. doubts: tests of the ray that exact arithmetic decided. A miss has triangle, object
+        and material -1, t inf and other float64 fields nan. The t of a hit is inf if it overflows: tell misses by `hit` or `triangle`.
 
         No rays, shape (0, 3), give no rows. Raises InputError for other shapes, masked elements and unknown names; for inf,
         NaN, limits that are not above 0 and origins farther than 2^126 from the scene it names the ray."""
@@ -162,8 +163,8 @@ class Scene(_raygate.Scene):
     def inside(self, points: npt.ArrayLike, *, threads: int | None = None) -> npt.NDArray[np.bool_]:
         """Returns whether points, of shape (N, 3), or (3,) for one, are inside closed surfaces: bool, (N,). threads: as for trace().
 
-        A point is inside if a ray from it crosses surfaces an odd number of times. The count is exact for the points as rounded by
-        trace(). So the orientation of faces does not matter, a shell within another one is a cavity, and the intersection of two solids
+        A point is inside if a ray from it crosses surfaces an odd number of times. The count is exact for points rounded as origins are
+        by trace(). So the orientation of faces does not matter, a shell within another one is a cavity, and the intersection of two solids
         is outside. If faces are oriented alike, winding_number(points)[0] != 0 is the union of solids. Answers have no meaning for an
         open surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
         points = _arrays.points(points, 125)
@@ -189,8 +190,7 @@ class Scene(_raygate.Scene):
         int64, and distance, x, y and z, float64, in the scene's unit of length. points: shape (N, 3), or (3,) for one.
 
         Distances are computed in float64; of equal distances, the lowest triangle is returned. Coordinates are rounded relative to the
-        scene's middle, so errors are absolute, and small distances have few digits. Raises InputError, which names the point, for inf,
-        NaN and coordinates beyond 2^1000."""
+        scene's middle, so errors are absolute, and small distances have few digits. Raises InputError as inside() does, but beyond 2^1000."""
         points = _arrays.points(points, 1000)
         fields = [("triangle", "<i8"), *((name, "<f8") for name in ("distance", "x", "y", "z"))]
         return self._closest(points).view(np.dtype(fields))

@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import ctypes
+import fractions
 import os
 import pathlib
 import pickle
@@ -215,6 +216,34 @@ class Arrays(unittest.TestCase):
         self.assertEqual(tiny.rounding[0], 36)  # three corners of each face
         self.assertLess(tiny.rounding[1], 2.0 ** -149)
 
+    def test_counts_rounded_rays(self):
+        origins, down = np.random.default_rng(8).uniform(0, 1, (100, 3)), [0, 0, -1]
+        for vertices, count in ((self.VERTICES, 0), (np.array(self.VERTICES) + 4096, 100), (np.array(self.VERTICES) * 0.1, 0)):
+            scene = raygate.Scene(vertices, self.FACES)
+            scene.trace(np.ceil(origins), down)
+            self.assertEqual(scene.rounded_rays, 0)
+            for hits in ("nearest", "any", "all"):
+                scene.trace(origins, down, hits=hits)
+            scene.inside(origins)
+            self.assertEqual(scene.rounded_rays, 4 * count)
+
+    def test_errors_of_t_and_points(self):
+        for middle in (0, 5e6 + 0.1):
+            vertices = np.array(self.VERTICES) + middle
+            scene = raygate.Scene(vertices, self.FACES)
+            origins, directions = self.points * 2 + middle, np.random.default_rng(9).normal(size=(3000, 3))
+            hits = scene.trace(origins, directions)
+            self.assertGreater((hits["hit"] == 1).sum(), 100)
+            whole = np.vectorize(fractions.Fraction, otypes=[object])
+            for origin, direction, hit in zip(whole(origins), whole(directions), hits):
+                if hit["hit"] == 1:
+                    a, b, c = whole(vertices[self.FACES[hit["triangle"]]])
+                    normal = np.roll(b - a, -1) * np.roll(c - a, -2) - np.roll(b - a, -2) * np.roll(c - a, -1)
+                    t = ((a - origin) @ normal) / (direction @ normal)
+                    self.assertLessEqual(abs(hit["t"] - t), 2.0 ** -33 * t)
+                    self.assertLessEqual(np.abs([hit[axis] - x for axis, x in zip("xyz", origin + t * direction)]).max(),
+                                         2.0 ** -33 * t * np.abs(direction).max() + 2.0 ** -52 * (middle + 9))
+
     def test_winding_number(self):
         inside = (np.abs(self.points) < 1).all(axis=1)
         winding, errors = self.cube.winding_number(self.points)
@@ -358,6 +387,9 @@ class Arrays(unittest.TestCase):
         self.assertTrue(((found["triangle"] >= 0) & (found["triangle"] < 12)).all())
 
     def test_closest_of_far_points(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(self.cube.closest(np.float32([3e38, 0, 0]))["x"].tolist(), [1])
         for far in (1e9, 1e20, 1e200):
             found = self.cube.closest(far * np.array([[1.0, 0.25, 0.5], [-1, 0, 0]]))
             self.assertEqual(found[["x", "y", "z"]][0].tolist(), (1, 1, 1))
@@ -393,6 +425,8 @@ class Arrays(unittest.TestCase):
                  lambda: raygate.Scene([[0, 0, 0], [0, np.nan, 0], [0, 1, 0], [np.nan] * 3], [[0, 1, 2]])),
                 ("^width, height: found 9000 x 9000, expected at most", lambda: self.cube.render(9000, 9000)),
                 ("^format: found 'str', expected one of Format$", lambda: raygate.float.fp_add(1, 2, "binary16")),
+                (r"^faces: found an array of int64 of shape \(0, 3\), expected .*, M > 0$",
+                 lambda: raygate.Scene(self.VERTICES, np.zeros((0, 3), int))),
                 ("faces: found an array of float64",
                  lambda: raygate.Scene(self.VERTICES, [[0.0, 1.0, 2.0]])),
                 (r"points: found \[nan, 0.0, 0.0\] in point 1", lambda: self.cube.inside([[0, 0, 0], [np.nan, 0, 0]])),

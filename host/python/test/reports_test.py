@@ -503,6 +503,9 @@ class Reports(unittest.TestCase):
                 "\ufeff.5,-.5,5,0,0,-1\n", '".5","-.5","5","0","0","-1"\n'):
                 run = subprocess.run([program, path, "-", "--columns", "triangle,t", "-q"], input=table.encode(), capture_output=True, check=False)
                 self.assertEqual((run.returncode, run.stdout, run.stderr), (0, b"triangle,t\n0,5\n", b""), table)
+            (pathlib.Path(folder) / "b.json").write_text('{"instances": [{"model": "a.obj", "places": [[0, 0, 0]]}]}')
+            with self.assertRaisesRegex(raygate.InputError, 'found no .*b.obj, expected this model, or "obj" to name another'):
+                raygate.Scene(pathlib.Path(folder) / "b.json")
             os.symlink(program, f"{folder}/raygate-trace")
             said = subprocess.run(["raygate-trace", "--help"], env=os.environ | {"PATH": folder}, capture_output=True, text=True, check=True).stdout
             self.assertTrue(said.startswith("Usage: raygate-trace SCENE") and "./trace" not in said, said)
