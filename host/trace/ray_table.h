@@ -47,10 +47,10 @@ struct RayTable {
 };
 
 /// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or
-/// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add). Numbers are separated by commas; in a line without
-/// commas by semicolons; without either by spaces and tabs. Spaces and quotes around numbers, a
-/// byte order mark, empty lines, lines that begin with # and one header without a number are
-/// allowed. A header that names these columns in another order is an error.
+/// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add). Numbers are separated by commas, in a line without
+/// commas by semicolons, and in a line without both by white space. Spaces and quotes around
+/// numbers, a byte order mark, empty lines, lines that begin with # and one header without a number
+/// are allowed. A header that names these columns in another order is an error.
 class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".
