@@ -48,7 +48,7 @@ RAYGATE_INLINE bool any_leaf(const Bvh& bvh, const Boxes& boxes, const Visit& vi
 // If far - O has the sign of I, the bounds leave no earlier than any ray; otherwise no ray hits
 // anything in the box. The cutoff of the bounds is at least each ray's cutoff.
 
-/// Smaller magnitudes of a direction's components count as 0. Exits are multiplied by kExitGrowth.
+/// Direction components below this in magnitude count as 0. Exits are multiplied by kExitGrowth.
 inline constexpr float kSmallestComponent = 0x1p-100f;
 inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
 

@@ -11,9 +11,9 @@
 
 // Reproducibility guarantees
 //
-// The same program with the same inputs writes the same bytes for any number of threads, any
-// engine, any unit and any number of lanes. On another machine or with another compiler, the
-// following holds if this file compiles and require_ieee_floats() passes:
+// The same program with the same inputs writes the same bytes for any number of threads or lanes,
+// any engine and any unit. On another machine or with another compiler, the following holds if
+// this file compiles and require_ieee_floats() passes:
 //   * every decision (hit or miss, order of hits, side) is the same, because it is exact;
 //   * polygon records, hit distances, hit points and their error bounds have the same bits for any
 //     instruction set: they use only IEEE 754 +, *, / in a fixed order;

@@ -72,7 +72,7 @@ void make_planes(const PlaneViews& views, float (&words)[4][kQuad]);
 
 // Derivation of the error bound of the hit point P = d I / V, for V = I . N and the direction I
 //
-// Let u = 2^-24, the unit roundoff, and g = how far V's exponent is below N's largest one, or 0.
+// Let u = 2^-24, the unit roundoff; g: how far V's exponent is below the largest in N, or 0.
 // 1. V has a relative error of at most r = 48.5 u 2^g (proof in hit_test_pkg.sv).
 // 2. t = d / V: d adds 2 u, and the division u. In all, at most (48.5 * 2^g + 3.2) u / (1 - r).
 // 3. P_k = (d I_k) / V has one more rounding: at most (48.5 * 2^g + 4.3) u / (1 - r), which is less

@@ -95,7 +95,7 @@ void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3&
 
 /// Moves the triangles, normals, texture coordinates, materials and textures of `part` into a new
 /// mesh of the scene and returns the mesh index. Object indices do not change. Mesh coordinates are
-/// relative to `part.origin`. If `part.materials` is empty, materials are indices of the scene's.
+/// relative to `part.origin`. If `part.materials` is empty, material indices are the scene's.
 std::uint32_t add_mesh(Scene& scene, Scene&& part);
 
 /// Adds a copy of a mesh with reversed winding (corners C, B, A) and returns the copy's index.

@@ -39,8 +39,8 @@ enum class Hits {
 };
 
 /// Returns the columns of these names ("ray", "t" ...), or the default ones if `names` is empty.
-/// Throws InputError "--columns: found ..., expected ..." (`dashes` replaces "--") for a name that
-/// is unknown, repeated or not available with `hits`.
+/// Throws InputError "--columns: found ..., expected ...", with `dashes` in place of "--", for a
+/// name that is unknown, repeated or not available with `hits`.
 [[nodiscard]] std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
                                                 const std::string& dashes);
 

@@ -27,8 +27,8 @@ struct RayTable {
 
   /// Adds the ray P = origin + t direction with hits 0 < t < limit, in the file's coordinates. The
   /// direction can have any length; a zero direction hits nothing. Origins are rounded to binary64
-  /// after subtracting the scene's origin. Returns null or, for an invalid ray, which is not added,
-  /// the message "found ..., expected ...".
+  /// after subtracting the scene's origin. Returns null. For an invalid ray, adds nothing and
+  /// returns the message "found ..., expected ...".
   const char* add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
                   const glm::dvec3& scene_origin);
 

@@ -127,7 +127,7 @@ class ImageWriter {
     return sum;
   }
 
-  /// Returns the children of wide node `ref`: splits the child with the largest box repeatedly.
+  /// Returns the children of wide node `ref`: repeatedly splits the child with the largest box.
   [[nodiscard]] std::vector<Ref> children(Ref ref) const {
     std::vector<Ref> refs = {ref};
     while (refs.size() < NodeLine::kChildren) {

@@ -683,8 +683,8 @@ class PacketIntersector {
     }
   }
 
-  /// Decides exactly whether a hit of the ray is its nearest and, unless `sure`, whether it is a
-  /// hit. `t` is read only if `sure`. Returns whether `primitive` is the ray's nearest hit now.
+  /// Decides exactly whether a primitive is the ray's nearest hit, and returns whether it is.
+  /// `sure`: the primitive is hit, at a distance in `t`; only the order of hits must be decided.
   bool resolve(ConeTraversal& walk, int group, int lane, std::int32_t primitive, bool sure,
                const Interval& t) {
     const std::uint32_t number = walk.number(group, lane);

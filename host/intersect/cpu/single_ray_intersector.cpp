@@ -180,7 +180,7 @@ constexpr auto kNumbersOf = [] {
   return numbers;
 }();
 
-/// Sorts eight keys, of which `count` are not negative, downwards (Batcher's bitonic network).
+/// Sorts eight keys in descending order (Batcher's bitonic network); only `count` are >= 0.
 RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count) {
   IntLanes other, larger, smaller;
   const auto compare = [&]() __attribute__((always_inline)) {
@@ -358,8 +358,8 @@ class SingleRayIntersector {
     return true;
   }
 
-  /// Decides exactly whether the hit of a primitive is the nearest and, unless `sure`, whether it
-  /// is a hit. Returns whether the primitive is the nearest hit now.
+  /// Decides exactly whether a primitive is the ray's nearest hit, and returns whether it is.
+  /// `sure`: the primitive is hit; only the order of hits must be decided.
   bool resolve(RayTraversal& walk, std::uint32_t primitive, bool sure) {
     const ExactRay ray = exact_ray(walk.number);
     NearestHit best;

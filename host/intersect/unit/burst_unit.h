@@ -103,14 +103,14 @@ using BurstResults = std::vector<BurstResult>;
 ///   U_k = (E_kx Ix + E_ky Iy) + E_kz Iz,  V likewise with N,  t = d / V,  P_k = (d I_k) / V
 ///
 ///   U_k is sure if b_k < |U_k| < infinity (not with a NaN or negative b_k)
-///   miss   d is 0, or a sure U_k has the opposite sign of d
-///   hit    otherwise, if all U_k are sure, V is normal, has d's sign and an exponent at most 12
-///          below the largest exponent of N's words, and t is a positive normal number
-///   doubt  otherwise
+///   miss   d is 0, or a sure U_k has not the sign of d
+///   hit    no miss; all U_k are sure; V is normal, has d's sign and an exponent at most 12
+///          below the largest exponent of N's words; t is a positive normal number
+///   doubt  neither miss nor hit
 ///
-/// The error of t is 2^(6 + e) floats. Here e is how far V's exponent is below N's largest one, or
-/// 0 (proof in hw/hit_test/hit_test_pkg.sv). Each burst keeps its hit with the smallest t; of
-/// several, the first. If a later hit and the kept hit are no more floats apart than the sum of
+/// The error of t is 2^(6 + e) floats. Here e is how far V's exponent is below the largest in N,
+/// or 0 (proof in hw/hit_test/hit_test_pkg.sv). Each burst keeps its hit with the smallest t (of
+/// equal ones, the first). If a later hit and the kept hit are no more floats apart than the sum of
 /// their errors, the hit that is not kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResult> {
  public:

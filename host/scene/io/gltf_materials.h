@@ -89,7 +89,7 @@ class GltfMaterials {
     return index == -1 ? kDefault : file_.at(file_.list("materials"), index, "material");
   }
 
-  /// Returns the `size` numbers at a key; none if missing or, with a warning, of another form.
+  /// Returns the `size` numbers at a key; none for a missing key or (with a warning) a wrong value.
   std::vector<double> numbers(const Json& object, const char* key, std::size_t size) {
     std::vector<double> numbers = numbers_in(object, key);
     if (numbers.size() == size) return numbers;
