@@ -99,7 +99,7 @@ RAYGATE_INLINE D power(const D& base, const D& exponent) {
   return value <= 0.04045 ? value / 12.92 : power((value + 0.055) / 1.055, 2.4);
 }
 
-/// Returns the sRGB value, neither rounded nor clamped, of a linear value of at least 0.
+/// Returns the sRGB value, not rounded or clamped, of a linear value >= 0; 1 is white in both.
 [[nodiscard]] inline double srgb_curve_above(double linear) {
   const double x = linear;
   return x <= 0.0031308 ? 12.92 * x : 1.055 * power(x, 1.0 / 2.4) - 0.055;

@@ -1,4 +1,4 @@
-// Input: contents of files, binary and decimal numbers, and words in quotes for messages.
+// Reading input: contents of files, binary and decimal numbers, and quoting of words in messages.
 #pragma once
 
 #include <cstddef>

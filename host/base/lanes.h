@@ -110,8 +110,7 @@ RAYGATE_INLINE T spread(Element x) {
   return T{} + x;
 }
 
-/// Converts lanes to another element type. Converting to floats rounds to nearest, to integers
-/// towards 0.
+/// Converts lanes to another element type: to floats rounding to nearest, to integers towards 0.
 template <class To, class T>
 RAYGATE_INLINE To convert(const T& x) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -272,7 +271,7 @@ RAYGATE_INLINE DoubleQuad widen(const FloatQuad& from) {
   return wide(from);
 }
 
-/// Vector of floats that fills a register; GCC compares wider vectors word by word.
+/// The vector of floats that fills a register of kCode. GCC compares wider vectors word by word.
 template <Vectors kCode>
 using NativeFloats = Vec<float, kCode == Vectors::kBaseline ? kQuad : kLanes>;
 /// Returns quad(0) if T has four lanes, or quad(0) and quad(1) joined if it has eight.
@@ -285,7 +284,7 @@ RAYGATE_INLINE T joined(const Quad& quad) {
   }
 }
 
-/// Returns, for each quad of lanes, elements i and j of a, then those of b.
+/// Returns, for each quad of lanes, elements i and j of a's quad, then i and j of b's quad.
 template <int i, int j, class T>
 RAYGATE_INLINE T pick(const T& a, const T& b) {
   if constexpr (kLanesOf<T> == kQuad) {
@@ -295,7 +294,7 @@ RAYGATE_INLINE T pick(const T& a, const T& b) {
   }
 }
 
-/// Transposes the rows: element i of row k becomes element k of row i, in each quad of four rows.
+/// Transposes four rows: in each quad of lanes, element i of row k becomes element k of row i.
 template <class T>
 RAYGATE_INLINE void transpose(T (&rows)[kQuad]) {
   const T ab[2] = {pick<0, 1>(rows[0], rows[1]), pick<2, 3>(rows[0], rows[1])};
@@ -317,7 +316,7 @@ RAYGATE_INLINE void transpose(FloatLanes (&rows)[kLanes]) {
   }
 }
 
-/// Load one record per lane, or store those of the first `count` lanes. A record is kWords
+/// Load one record per lane, or store the records of the first `count` lanes. A record is kWords
 /// consecutive floats or 32-bit words; words[i] holds word i of each lane's record.
 template <class T, std::size_t kWords, class Record>
 RAYGATE_INLINE void load_records(const Record* const (&records)[kLanesOf<T>], T (&words)[kWords]) {

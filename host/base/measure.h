@@ -20,7 +20,7 @@ inline double processor_seconds() { return static_cast<double>(std::clock()) / C
 /// Measures consecutive laps.
 class Stopwatch {
  public:
-  /// Returns the seconds since construction or the last lap.
+  /// Returns the seconds since the last call or, at the first call, since construction.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const std::chrono::duration<double> elapsed = now - start_;

@@ -13,7 +13,7 @@
 
 namespace raygate {
 
-/// During its lifetime, checkpoint() on its thread calls `check`, which may throw to end the work.
+/// During its lifetime, checkpoint() on the same thread calls `check`, which may throw to end work.
 class CheckpointScope {
  public:
   explicit CheckpointScope(std::function<void()> check)

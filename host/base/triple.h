@@ -29,8 +29,8 @@ template <class T>
 RAYGATE_INLINE Triple<T> cross(const Triple<T>& u, const Triple<T>& v) {
   return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
 }
-/// Returns u x v, and for each component the sum of the magnitudes of its two products. V is a
-/// Triple or a glm vector.
+/// Returns u x v. Sets `size`, by component, to the sum of the magnitudes of the two products in u
+/// x v. V is a Triple or a glm vector.
 template <class V>
 RAYGATE_INLINE V cross(const V& u, const V& v, V& size) {
   const V plus = {u.y * v.z, u.z * v.x, u.x * v.y}, minus = {v.y * u.z, v.z * u.x, v.x * u.y};

@@ -12,7 +12,7 @@
 // compressed wide BVHs", 2017). Let C(n, i) be the least cost of the subtree of binary node n if
 // the subtree becomes at most i children of a wide node. Let A be the probability that a ray which
 // meets the root's box meets the box of n: the ratio of their surface areas. Then
-//   C(n, 1) is the lesser of A kNodeCost + C(n, 8), an inner node, and A kLeafCost, a leaf;
+//   C(n, 1) is the lesser of A kNodeCost + C(n, 8) (inner node) and A kLeafCost (leaf);
 //   C(n, i) is the lesser of C(n, i - 1) and C(left, k) + C(right, i - k) for the best k.
 
 namespace raygate {
@@ -23,10 +23,10 @@ using Ref = BinaryBvh::Ref;
 constexpr std::uint32_t kTreeTask = 4096;  // maximum number of primitives in a task of one thread
 constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
 constexpr float kNodeCost = 1.0f;
-/// Cost of a leaf with 1 to 4 triangles, which are tested at once.
+/// [n]: cost of a leaf with n triangles, which are tested at once.
 constexpr float kLeafCost[Bvh::kMaxLeafSize + 1] = {0.0f, 0.95f, 1.0f, 1.05f, 1.1f};
 
-/// The optimal ways to collapse a binary node.
+/// The optimal ways to replace a binary node by 1 to 8 children of a wide node.
 struct Plan {
   float cost[Bvh::kWidth];  ///< [i]: C(n, i + 1); [0]: cost as one child
   std::uint8_t
@@ -67,7 +67,7 @@ class BvhWriter {
   }
 
  private:
-  /// Sets first_primitives_ if the tree has instances, which get no primitive indices.
+  /// If some of the tree's primitives are instances, numbers the others in first_primitives_.
   void number_primitives() {
     if (!bvh_.has_instances()) return;
     first_primitives_.reserve(tree_.size());
@@ -87,7 +87,7 @@ class BvhWriter {
                [&](const Primitive& p) { return is_triangle(p); });
   }
 
-  /// A task for one thread: a binary node with at most kTreeTask primitives below it.
+  /// A task for one thread: writing the subtree of a binary node with at most kTreeTask primitives.
   struct Task {
     Ref ref;
     std::uint32_t parent;  ///< index of the parent in the BVH
@@ -108,7 +108,8 @@ class BvhWriter {
     return tree_.is_leaf(ref) ? kLeafCost[1] * area(ref) : plans_[ref].cost[children - 1];
   }
 
-  /// Plans a node whose children have been planned.
+  /// Sets the node's Plan: the least cost of its subtree as 1 to 8 children, and whether it becomes
+  /// a leaf. Its children's Plans must be set.
   void plan(Ref ref) {
     const auto [left, right] = tree_.nodes[ref].child;
     Plan& plan = plans_[ref];
@@ -163,7 +164,7 @@ class BvhWriter {
     for (const Ref child : tree_.nodes[ref].child) collect_tasks(child, large, tasks);
   }
 
-  /// Appends the at most `most` nodes that replace `ref` among the children of a wide node.
+  /// Appends the nodes, at most `most`, that replace `ref` among the children of a wide node.
   void collect_children(Ref ref, int most, Ref (&children)[Bvh::kWidth], int& count) const {
     if (most > 1 && !tree_.is_leaf(ref)) {
       const Plan& plan = plans_[ref];
@@ -200,7 +201,7 @@ class BvhWriter {
 
   [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || plans_[ref].is_leaf; }
 
-  /// Writes a leaf with the primitives that begin at index `first`.
+  /// Writes a leaf, whose primitives begin at tree_.primitives[first].
   void write_primitives(const Bvh::Child& leaf, std::uint32_t first) {
     float* const to = &bvh_.corners_[9 * std::size_t{leaf.first}];
     for (std::uint32_t i = 0; i < leaf.count; ++i) {

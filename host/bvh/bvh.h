@@ -22,7 +22,7 @@ namespace raygate {
 class RangeMap {
  public:
   RangeMap() = default;
-  /// Makes successive ranges of these lengths, starting at `begin`. Their end is below 2^32.
+  /// Makes successive ranges of these lengths, starting at `begin`. The last one ends below 2^32.
   RangeMap(std::uint32_t begin, const std::vector<std::uint32_t>& lengths) : begins_{begin} {
     begins_.reserve(lengths.size() + 1);
     for (const std::uint32_t length : lengths) begins_.push_back(begins_.back() + length);
@@ -54,11 +54,12 @@ class RangeMap {
   int shift_ = 0;
 };
 
-/// An instance of a mesh: nodes and primitives of the mesh's BVH, renumbered to start at `first`.
+/// An instance of a mesh. It shares the mesh's BVH: node and primitive i of that BVH have number
+/// `first` + i here.
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance
   float matrix[3][3];     ///< linear part of the transform, rounded
-  float low[3], high[3];  ///< bounds of the translation, widened to cover rounding of boxes
+  float low[3], high[3];  ///< translation -+ e; e is defined in instance_bvh.cpp
   std::uint32_t mesh;     ///< index of the mesh's BVH
   std::uint32_t first = 0;
   std::uint32_t first_triangle = 0;  ///< index in the scene of the instance's first triangle
@@ -69,7 +70,7 @@ struct InstanceBvh {
 
 /// A BVH with eight children per node. A leaf holds a range of primitives; primitive i is triangle
 /// `triangle_of(i)` of the scene. The BVH is the same, byte for byte, for any number of building
-/// threads. If the scene has rests (see rest_of), the BVH refers to these and to the triangles.
+/// threads. If the scene has rests (see rest_of), the BVH refers to its rests and triangles.
 /// Memory: 320 bytes per node, one node for about five primitives, and 41 bytes per primitive.
 ///
 /// A mesh with several instances has one BVH. The nodes and primitives below an instance have
@@ -116,14 +117,14 @@ class Bvh {
     }
   };
 
-  /// Buffer for the corners of a leaf's triangles, for leaves of instances.
+  /// Buffer for the corners of the triangles of an instance's leaf.
   struct LeafRoom {
     float corners[9 * kMaxLeafSize + kMaxLeafSize];
   };
 
-  /// Builds the BVH of fewer than 2^31 triangles. All positions are finite with a magnitude of at
-  /// most 2^126, also after instances' transforms, where this limit holds for the sum of the
-  /// magnitudes of a coordinate's terms. A scene with rests must outlive the BVH.
+  /// Builds the BVH of fewer than 2^31 triangles. Positions are finite with a magnitude of at most
+  /// 2^126. For a coordinate that an instance transforms, this limit holds for the sum of the
+  /// magnitudes of its terms. A scene with rests must outlive the BVH.
   explicit Bvh(const Scene& scene, int threads = 1);
 
   /// Returns the stored nodes, without those of instances; nodes()[0] is the root.
@@ -168,7 +169,7 @@ class Bvh {
     if (!is_binary32() && !is_instanced(primitive)) add_rests(triangles_[primitive], corners);
     return corners;
   }
-  /// Prefetches the triangle and rests that corners_of() reads, by three calls: step 0, 1 and 2.
+  /// Prefetches what corners_of() reads. Needs three calls, with step 0, 1 and 2.
   RAYGATE_INLINE void prefetch_rests(std::uint32_t primitive, int step) const {
     if (is_binary32() || is_instanced(primitive)) return;
     const std::uint32_t& triangle = triangles_[primitive];
@@ -192,8 +193,8 @@ class Bvh {
   /// Builds the BVH of these triangles and of the instances, with at most `most_levels` levels.
   void build(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
              int most_levels, int threads);
-  /// Builds the BVHs of the scene's meshes, adds the instances, and returns the number of levels
-  /// below an instance.
+  /// Builds the BVHs of the scene's meshes and adds the instances. Returns the largest number of
+  /// levels below an instance.
   int add_instances(const Scene& scene, int threads);
   /// Returns the number of nodes on the longest path down from a node.
   [[nodiscard]] int levels(std::uint32_t index = 0) const;
@@ -287,7 +288,7 @@ class BvhView {
  private:
   static constexpr std::size_t kCornerBytes = 9 * sizeof(float);  // per primitive
 
-  /// Address of the children of one kind, and bytes per child.
+  /// Address of the first child of one kind, and bytes per child.
   struct Place {
     const void* begin;
     std::size_t bytes;

@@ -18,8 +18,8 @@
 //   S = sum |m_k| V_k + |m3|; D = sum |m_k - m'_k| V_k; v: a corner in the mesh.
 // 1. c = float32(double(m.v + m3)) differs from m.v + m3 by at most 1.01 u S + 2^-150.
 // 2. The float before c is at most 2.02 u S + 2^-149 below c.
-// 3. b = float32(low + m'.x), with low <= m3 - e, and x_k the end of the mesh's box on axis k with
-//    the lesser product m'_k x_k. So m'.x <= m'.v <= m.v + D.
+// 3. b = float32(low + m'.x). Here low <= m3 - e, with e as below, and x_k is the end of the mesh's
+//    box on axis k with the lesser product m'_k x_k. So m'.x <= m'.v <= m.v + D.
 // 4. The three products and three sums of b have an error of at most 4.1 u (S + e) + 3 2^-150.
 // So it suffices that e >= D + (4.1 + 1.01 + 2.02) u S + 4.1 u e + 2^-147. The code uses
 // e = D + 12 u S + 2^-140, which suffices because D <= u S, or D <= S if elements underflow.
@@ -44,7 +44,7 @@ InstanceBvh::InstanceBvh(const Instance& instance, const glm::dvec3& size) : mes
 
 namespace {
 
-/// Computes a node of the instance from one of its mesh.
+/// Computes a node of an instance from the mesh's node.
 RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Node& to) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   FloatLanes bounds[2][3];
@@ -70,8 +70,7 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Nod
     to.child[i] = {from.child[i].first + at.first, from.child[i].count};
 }
 
-/// Computes the corners of a leaf's triangles, with the bits of `transform_point`
-/// (host/scene/instances.h).
+/// Computes the corners of a leaf's triangles, with the same bits as transform_point().
 RAYGATE_INLINE void place(const InstanceBvh& at, const float* from, std::size_t count, float* to) {
   for (std::size_t v = 0; v < 3; ++v) {
     DoubleQuad corner[3];

@@ -24,7 +24,7 @@
 //     entry is at most t* (1 + 3.1 u) or at most 0. The product overflows only if t* > 2^127, which
 //     cannot be: on the axis with I in [1, 2), t* = (x - O) / I <= 2^127.
 //   * I < 2^-100: inverse_near = 2^100 <= 1/I, so a positive entry is no later than for 1/I, and
-//     another is not later than 0. If I = 0, then x = O and near - O < 0.
+//     any other one is not later than 0. If I = 0, then x = O and near - O < 0.
 // Exit: float32((far - O) * inverse_far).
 //   * I >= 2^-100: inverse_far = float32((1 + 8 u) float32(1/I)) (as in Ize, "Robust BVH ray
 //     traversal", 2013). With four roundings, the exit is at least t* (1 + 8 u) (1 - u)^4, which is

@@ -28,16 +28,15 @@ struct LeafVisits {
   [[nodiscard]] const LeafVisit* end() const { return visits.data() + count; }
 };
 
-/// A traversal, roughly front to back, that stops at every leaf and can be resumed. All rays have
-/// one octant. With many packets in flight, a hit-test unit is busy while packets await results.
+/// A traversal, roughly front to back, that stops at each leaf and can be resumed. All rays point
+/// into one octant. With many packets in flight, a hit-test unit works while packets await results.
 ///
 /// Box tests are conservative: no ray misses a triangle that it hits in exact arithmetic at a
 /// distance up to its cutoff (proof in packet_traversal.cpp). A ray also visits other triangles
 /// whose boxes it meets, except those in a plane through its origin, which it cannot hit.
 class PacketTraversal {
  public:
-  /// All rays point into one octant. Directions are scaled (scaled_direction: the largest component
-  /// in [1, 2)); coordinates have a magnitude of at most 2^126.
+  /// Rays point into `octant` with scaled directions. Coordinates are at most 2^126 in magnitude.
   PacketTraversal(const Bvh& bvh, int octant);
 
   /// Sets the ray of an unused lane. Must be called before the first next_leaf().

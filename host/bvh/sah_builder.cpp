@@ -33,7 +33,7 @@ RAYGATE_INLINE Box middle_of(const Box& box) {
   return half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
 }
 
-/// Bins of equal size along each axis of the box around all centres.
+/// Bins of equal size along each axis of the box around the centres of a range's primitives.
 struct Slices {
   int count;
   FloatLanes low, scale;  ///< by axis, in lanes 0 to 2
@@ -46,7 +46,7 @@ struct Slices {
       scale[k] = extent > 0.0f ? std::min(static_cast<float>(count) / extent, kMost) : 0.0f;
     }
   }
-  /// Returns the bins of a box's centre; lanes 0 to 2.
+  /// Returns, by axis in lanes 0 to 2, the index of the bin that contains a box's centre.
   [[nodiscard]] RAYGATE_INLINE IntLanes of(const Box& box) const {
     Box middle = (middle_of(box) - low) * scale;
     middle[3] = 0.0f;
@@ -54,14 +54,14 @@ struct Slices {
   }
 };
 
-/// A split: bins below `part` go left; in ranges up to kFew, the first `part` primitives.
+/// A split: bins below `part` go left or, in a range of up to kFew, the first `part` primitives.
 struct Cut {
   float cost = kNever;  ///< area times count, summed over both sides
   int axis = 0;
   int part = 0;
 };
 
-/// Replaces `best` if a split between parts with these boxes and counts is cheaper.
+/// Replaces `best` if a split between two of these parts (bins or single primitives) is cheaper.
 RAYGATE_INLINE void find_cut(const Box* boxes, const std::uint32_t* counts, int parts, int axis,
                              float unit, Cut& best) {
   float right_cost[kBins];
@@ -113,8 +113,8 @@ RAYGATE_INLINE void cut_between_slices(std::span<const Primitive> run, const Sli
   }
 }
 
-/// Moves primitives in bins below the split to the front, stably, and returns their number. `room`
-/// is as large as the range.
+/// Moves the primitives in bins below the split to the front, stably, and returns their number.
+/// `room` is a buffer as large as the range.
 RAYGATE_INLINE std::uint32_t part_at(const Cut& cut, const Slices& slices, std::span<Primitive> run,
                                      Primitive* room) {
   const float low = slices.low[cut.axis], scale = slices.scale[cut.axis];
@@ -154,8 +154,9 @@ RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
   if (best.axis != 2) sort_along(run, best.axis);
 }
 
-/// Splits a range in two, and returns the size of the first part. `room` is as large as the range.
+/// Splits a range in two, returns the size of the first part, and sets `box` to the range's bounds.
 /// Splits in halves if no split is found, or near the maximum depth (`depths_left` levels away).
+/// `room` is a buffer as large as the range.
 std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left, Box& box) {
   return in_vectors([&](auto) RAYGATE_BODY -> std::uint32_t {
     const auto size = static_cast<std::uint32_t>(run.size());

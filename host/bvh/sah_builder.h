@@ -12,15 +12,15 @@
 
 namespace raygate {
 
-/// The low corner in lanes 0 to 2, the negated high corner in lanes 4 to 6: the union of two boxes
-/// is the minimum of each lane. Lanes 3 and 7 are not used.
+/// A box: its low corner in lanes 0 to 2, its negated high corner in lanes 4 to 6. So the union of
+/// two boxes is the minimum of each lane. Lanes 3 and 7 are not used.
 using Box = FloatLanes;
 
 RAYGATE_INLINE Box empty_box() { return Box{} + std::numeric_limits<float>::infinity(); }
 
 RAYGATE_INLINE void grow(Box& box, const Box& other) { box = other < box ? other : box; }
 
-/// Returns 1 / (longest side of the box), a unit in which areas are finite.
+/// Returns 1 / (longest side of the box). With this unit, half_area() is finite.
 RAYGATE_INLINE float unit_of(const Box& box) {
   const float longest = -std::min({box[0] + box[4], box[1] + box[5], box[2] + box[6]});
   return std::min(1.0f / longest, std::numeric_limits<float>::max());
@@ -64,7 +64,7 @@ struct Primitive {
   }
 
   [[nodiscard]] RAYGATE_INLINE Box box() const { return load<Box>(this); }
-  /// Returns the box's centre along an axis. Sides are halved first, so that the sum is finite.
+  /// Returns the box's centre along an axis. Halves both bounds first, so that the sum is finite.
   [[nodiscard]] RAYGATE_INLINE float middle(int axis) const {
     return 0.5f * low[axis] - 0.5f * turned_high[axis];
   }

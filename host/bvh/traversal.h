@@ -48,7 +48,7 @@ RAYGATE_INLINE bool any_leaf(const Bvh& bvh, const Boxes& boxes, const Visit& vi
 // If far - O has the sign of I, the bounds leave no earlier than any ray; otherwise no ray hits
 // anything in the box. The cutoff of the bounds is at least each ray's cutoff.
 
-/// Direction components below kSmallestComponent count as 0. Exits are multiplied by kExitGrowth.
+/// Direction components below this in magnitude count as 0. Exits are multiplied by kExitGrowth.
 inline constexpr float kSmallestComponent = 0x1p-100f;
 inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
 
@@ -151,7 +151,7 @@ struct PacketBounds8 {
   }
 };
 
-/// Returns the bounds of packet `which`, for intersect_children; `like` has its origin and octant.
+/// Returns the bounds of packet `which`, with origin and octant of `like`, for intersect_children.
 RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
                                       const PacketBounds& like) {
   PacketBounds bounds = like;

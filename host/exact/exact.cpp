@@ -72,7 +72,7 @@ Expansion<96> exact_slope(const glm::dvec3& direction, const Corners& t) {
   return exact_dot(direction, exact_normal(t));
 }
 
-/// Estimates t = D / (direction . N) at a plane, for N of triangle_normal and D of plane_distance.
+/// The ray's t at a triangle's plane, estimated: plane_distance / (direction . triangle_normal).
 struct Fraction {
   Estimate numerator, denominator;
 

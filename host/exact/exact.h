@@ -173,7 +173,7 @@ struct Barycentric {
 [[nodiscard]] int plane_side_at_hit(const ExactRay& ray, const Corners& hit, const Corners& other);
 
 /// Returns the exact sign of direction . N for the normal N of triangle_normal(): the sign of
-/// orient3d(origin, triangle) if the ray moves towards the plane, the opposite if it moves away.
+/// orient3d(origin, triangle) if the ray moves towards the plane, its negation if it moves away.
 [[nodiscard]] int direction_side(const glm::dvec3& direction, const Corners& triangle);
 
 /// Returns D = (a - origin) . ((b - a) x (c - a)) in double for the corners a, b, c. The relative

@@ -11,14 +11,14 @@
 
 // Reproducibility guarantees
 //
-// The same program with the same inputs writes the same bytes for any number of threads, engine,
-// unit and number of lanes. On another machine or with another compiler, the following holds if
+// The same program with the same inputs writes the same bytes for any number of threads or lanes,
+// any engine and any unit. On another machine or with another compiler, the following holds if
 // this file compiles and require_ieee_floats() passes:
 //   * every decision (hit or miss, order of hits, side) is the same, because it is exact;
 //   * polygon records, hit distances, hit points and their error bounds have the same bits for any
 //     instruction set: they use only IEEE 754 +, *, / in a fixed order;
-//   * images may differ in the last digits where shading uses powers, sines or cosines of another
-//     version of the C library; IEEE 754 does not define these functions.
+//   * pixels of images have the same bits (see elementary.h), except for glTF files with rotated
+//     textures or an orthographic camera: these use sines, cosines or atan of the C library.
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     defined(__NO_SIGNED_ZEROS__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0)

@@ -16,7 +16,7 @@
 
 namespace raygate {
 
-/// Adds the fields of a struct that consists of std::uint64_t only.
+/// Adds `other` to `sum`, field by field. All fields of Counters are std::uint64_t.
 template <class Counters>
 void add_counters(Counters& sum, const Counters& other) {
   using Words = std::array<std::uint64_t, sizeof(Counters) / sizeof(std::uint64_t)>;
@@ -92,7 +92,7 @@ struct RayWork {
 
 /// Options of a search. Spans must outlive the search. A span is empty or has one element per ray.
 struct RayQuery {
-  /// Whether all rays start at one point: faster in some engines, and does not change results.
+  /// Whether all rays start at one point. Makes some engines faster; does not change results.
   bool common_origin = false;
   /// Positive. Only hits with exact t < t_max[i] count; +infinity: no limit.
   std::span<const float> t_max{};
@@ -119,7 +119,7 @@ struct RayQuery {
 
 /// Properties of an engine, for callers that prepare its queries.
 struct EngineTraits {
-  /// Best number of rays per query: about 16,384 for each test done in parallel.
+  /// Best number of rays per query: about 16,384 for each test that the engine does in parallel.
   std::size_t batch = std::size_t{1} << 14;
   bool takes_exact_rays = false;  ///< RayQuery::exact_rays
   bool wants_sources = false;     ///< source_ids save more time than it takes to find them

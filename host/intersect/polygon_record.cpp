@@ -40,7 +40,7 @@ bool lower(const glm::dvec3& a, const glm::dvec3& b) {
 
 /// Returns A x B in float for A = a - origin and B = b - origin, computed as A x (B - A), which
 /// cancels less for a distant triangle. Always starts from the lower vertex, so that the two
-/// triangles at an edge get exactly opposite numbers.
+/// triangles at an edge get exactly negated words.
 glm::vec3 edge_words(const glm::dvec3& origin, const glm::dvec3& a, const glm::dvec3& b) {
   glm::dvec3 edge = lower(a, b) ? edge_normal(origin, a, b) : -edge_normal(origin, b, a);
   if (!ordinary(largest(edge))) edge = scaled_by(edge, to_unit(edge));
@@ -79,7 +79,7 @@ constexpr double kU = 0x1p-53;  // as in exact.cpp
 
 using Points = Triple<DoubleQuad>;
 
-/// Clears `good` in lanes whose value is neither 0 nor has an exponent in [-60, 60].
+/// Clears `good` in lanes in which `size` is neither 0 nor has an exponent in [-60, 60].
 RAYGATE_INLINE void require_ordinary(const DoubleQuad& size, LongQuad& good) {
   good &= ((size >= 0x1p-60) & (size < 0x1p61)) | (size == 0.0);
 }
@@ -93,7 +93,7 @@ RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& val
   require_ordinary(largest(s), good);
 }
 
-/// Stores four words of each record i at words[i][first] to words[i][first + 3].
+/// Stores words a, b, c, d of each record i in words[i][first] to words[i][first + 3].
 template <std::size_t kWords>
 RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const FloatQuad& c,
                                 const FloatQuad& d, float (&words)[kQuad][kWords],

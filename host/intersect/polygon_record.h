@@ -26,7 +26,7 @@ struct alignas(64) PolygonRecord {
   glm::vec3 normal{0.0f};            ///< words 0-2: N = (B-A) x (C-A), the paper's H
   float d = 0.0f;                    ///< word 3: N . A; its sign (-1, 0 or 1) is exact
   std::array<glm::vec3, 3> edges{};  ///< words 4-12: A x B, B x C, C x A; for a shared edge the
-                                     ///< two triangles hold exactly opposite numbers
+                                     ///< two triangles hold exactly negated words
   std::array<float, 3> bounds{};     ///< words 13-15: |float32(I . E) - exact| < bound for edge E,
                                      ///< for every direction I with components of magnitude under 2
 };
@@ -72,7 +72,7 @@ void make_planes(const PlaneViews& views, float (&words)[4][kQuad]);
 
 // Derivation of the error bound of the hit point P = d I / V, for V = I . N and the direction I
 //
-// Let u = 2^-24, the unit roundoff, and g = how far V's exponent is below the largest of N's, or 0.
+// Let u = 2^-24, the unit roundoff; g: how far V's exponent is below the largest in N, or 0.
 // 1. V has a relative error of at most r = 48.5 u 2^g (proof in hit_test_pkg.sv).
 // 2. t = d / V: d adds 2 u, and the division u. In all, at most (48.5 * 2^g + 3.2) u / (1 - r).
 // 3. P_k = (d I_k) / V has one more rounding: at most (48.5 * 2^g + 4.3) u / (1 - r), which is less

@@ -43,7 +43,7 @@ struct CameraSetting {
 /// The user's choice of a camera, in world coordinates; unset members are chosen to suit the scene.
 struct CameraRequest {
   std::optional<CameraSetting> camera;  ///< none: the scene's camera, or a view of the whole scene
-  /// Azimuth and elevation in degrees: a view of the whole scene, even if the scene has a camera.
+  /// Azimuth and elevation in degrees: a view of the whole scene, instead of the scene's camera.
   std::optional<std::pair<double, double>> angles;
   std::optional<glm::dvec3> eye, target;  ///< replace eye and target of the camera or view
   std::optional<glm::dvec3> up;           ///< up direction of the camera or view
@@ -64,8 +64,8 @@ class Camera {
   static constexpr double kDefaultFov = 35.0;
 
   /// Returns the camera of `setting`, whose angle and lens must be in range. `aspect`: the image's
-  /// width over its height. The default of `up` is +y, or -z if the view is parallel to y. Throws
-  /// InputError if eye and target coincide, `up` is parallel to the view, or any is not finite.
+  /// width over its height. The default of `up` is +y, or -z for a view parallel to y. Throws
+  /// InputError if a vector is not finite, eye and target coincide or `up` is parallel to the view.
   [[nodiscard]] static Camera look_at(const CameraSetting& setting, double aspect);
 
   /// Returns the common origin of all rays, or the centre of the image for an orthographic camera.

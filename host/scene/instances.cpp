@@ -19,7 +19,7 @@ std::uint32_t append(std::vector<T>& all, std::vector<T>&& more) {
   return first;
 }
 
-/// Pads `all` with `missing` to `count` elements, then appends `more`. Ignores an empty `more`.
+/// Unless `more` is empty: pads `all` with `missing` to `count` elements, then appends `more`.
 template <class T>
 void append_parallel(std::vector<T>& all, std::size_t count, std::vector<T>&& more,
                      const T& missing = T(0.0f)) {
@@ -208,7 +208,7 @@ void flatten(Scene& scene, std::span<const Instance> instances) {
   }
 }
 
-/// Flattens the emissive instances, so that their triangles precede all others.
+/// Flattens the emissive instances, so that their triangles precede those of all other instances.
 void flatten_emitters(Scene& scene) {
   std::vector<bool> emits;
   emits.reserve(scene.meshes.size());

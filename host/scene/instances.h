@@ -62,7 +62,7 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   return {glm::vec3(turned / size), tangent.w};
 }
 
-/// Location of a stored triangle.
+/// Location where a triangle is stored: in the scene or in an instance's mesh.
 struct FaceRef {
   std::uint32_t instance = kNoIndex;  ///< index into Scene::instances; kNoIndex: none
   /// Index into Scene::triangles or into the triangles of the instance's mesh.
@@ -75,12 +75,12 @@ struct FaceRef {
   return scene.meshes[scene.instances[face.instance].mesh].triangles[face.triangle];
 }
 
-/// Returns the instance of a stored triangle, or nullptr for one of Scene::triangles.
+/// Returns a triangle's instance, or nullptr if the triangle is one of Scene::triangles.
 [[nodiscard]] inline const Instance* instance_at(const Scene& scene, const FaceRef& face) {
   return face.instance == kNoIndex ? nullptr : &scene.instances[face.instance];
 }
 
-/// Returns the object index of a stored triangle.
+/// Returns a triangle's object index.
 [[nodiscard]] inline std::uint32_t object_at(const Scene& scene, const FaceRef& face) {
   const Instance* const instance = instance_at(scene, face);
   return face_at(scene, face).object + (instance != nullptr ? instance->object : 0);
@@ -93,9 +93,9 @@ struct FaceRef {
 void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3& to,
               Instance& instance);
 
-/// Moves the triangles, normals, texture coordinates, materials, textures and objects of `part`
-/// into a new mesh of the scene and returns the mesh index. Mesh coordinates are relative to
-/// `part.origin`. If `part.materials` is empty, material indices refer to the scene's materials.
+/// Moves the triangles, normals, texture coordinates, materials and textures of `part` into a new
+/// mesh of the scene and returns the mesh index. Object indices do not change. Mesh coordinates are
+/// relative to `part.origin`. If `part.materials` is empty, material indices are the scene's.
 std::uint32_t add_mesh(Scene& scene, Scene&& part);
 
 /// Adds a copy of a mesh with reversed winding (corners C, B, A) and returns the copy's index.
@@ -108,7 +108,7 @@ class MeshInstancer {
   /// `scene` must outlive this object.
   MeshInstancer(Scene& scene, Scene&& part);
 
-  /// Adds an instance with this transform to the world. The scene's origin must be set. Mirrored
+  /// Adds an instance; `world` is its transform to the world. Scene::origin must be set. Mirrored
   /// instances share a mirrored mesh. Returns false and adds none if a coordinate may overflow.
   [[nodiscard]] bool add(const glm::dmat4& world, std::uint32_t object);
 

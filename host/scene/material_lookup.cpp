@@ -26,7 +26,7 @@ struct Point {
     return map.texture != kNoIndex && has_texcoords;
   }
 
-  /// Returns the codes of a map, from 0 to 1; 1 without a texture or texture coordinates.
+  /// Returns the texture's codes at the point, from 0 to 1; 1 without a texture or coordinates.
   [[nodiscard]] glm::vec3 codes(const MaterialMap& map) const {
     if (!has(map)) return glm::vec3(1.0f);
     return scene.textures[map.texture].codes_at(place_on(map.mapping), map.mapping.sampling);
@@ -50,7 +50,7 @@ struct Point {
     return mapped * static_cast<float>(between);
   }
 
-  /// Returns the tangent: xyz is the x axis, w the sign of the y axis; 0 if the file has none.
+  /// Returns the tangent in the format of Scene::tangents; 0 if the file has none.
   [[nodiscard]] glm::dvec4 tangent(const Instance* instance) const {
     glm::dvec3 sum(0.0);
     double side = 0.0;

@@ -39,7 +39,7 @@ namespace raygate {
 /// Returns the radiance that a material emits, averaged over its texture.
 [[nodiscard]] glm::dvec3 mean_emission(const Scene& scene, const Material& material);
 
-/// Returns the value of a blending opacity map at a point, without Material::opacity; 1: no map.
+/// Returns the blending opacity map's value at a point, without Material::opacity; 1 if no map.
 [[nodiscard]] float opacity_factor_at(const Scene& scene, const Triangle& triangle,
                                       const glm::dvec3& weights);
 

@@ -46,7 +46,7 @@ struct MetallicRoughness {
   float roughness = 1.0f;     ///< in [0, 1]; its square is the alpha of GGX
   float transmission = 0.0f;  ///< in [0, 1]: fraction of the dielectric part that is (rough) glass
   float specular = 1.0f;  ///< in [0, 1]: strength of dielectric reflection (KHR_materials_specular)
-  /// Colour of dielectric reflection at normal incidence (same extension).
+  /// Colour of dielectric reflection at normal incidence (KHR_materials_specular).
   glm::vec3 specular_color{1.0f};
   // Maps that multiply these values, and the channels that they use.
   MaterialMap roughness_map{};       ///< green
@@ -111,8 +111,8 @@ struct Triangle {
   std::uint32_t object = 0;    ///< always a valid index into Scene::objects
 };
 
-/// Returns whether a triangle is a placeholder for (part of) a face without area, with coinciding
-/// vertices. Placeholders keep their indices but are in no BVH.
+/// Returns whether a triangle is a placeholder for (part of) a face without area: two of its
+/// vertices coincide. Placeholders have indices but are in no BVH.
 [[nodiscard]] inline bool is_left_out(const Triangle& triangle) {
   return triangle.vertices[0] == triangle.vertices[1];
 }
@@ -149,7 +149,7 @@ struct PointLightAt {
   std::optional<SpotCone> spot = {};  ///< none: isotropic
 };
 using PointLight = PointLightAt<glm::vec3>;  ///< position relative to Scene::origin
-/// Position in world coordinates, for scenes whose origin is not known yet.
+/// A point light in world coordinates, for scenes whose origin is not known yet.
 using WorldPointLight = PointLightAt<glm::dvec3>;
 
 /// A directional light, infinitely far away.
@@ -212,7 +212,7 @@ struct Scene {
   std::vector<glm::vec3> positions;
   /// Rests (see rest_of) of the first rests.size() positions. All later positions have no rest.
   std::vector<glm::ivec3> rests;
-  /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour.
+  /// Scene-linear RGB of the first colors.size() positions. Multiplies the diffuse colour.
   std::vector<glm::vec3> colors;
   std::vector<glm::vec3> normals;  ///< unit length if a triangle uses them
   /// Tangents of the first normals: xyz is the normal map's x axis, w (1 or -1) the sign of its y
@@ -221,7 +221,7 @@ struct Scene {
   std::vector<glm::vec2> texcoords;
   /// Second set, for the first elements of `texcoords`; the others have no second coordinates.
   std::vector<glm::vec2> second_texcoords;
-  /// Vertex opacities of the first `texcoords`; 1 if missing.
+  /// Vertex opacities, for the first elements of `texcoords`; the opacity of the others is 1.
   std::vector<float> opacities;
   std::vector<Triangle> triangles;
   std::vector<Mesh> meshes;
@@ -260,7 +260,7 @@ struct Scene {
 /// Adds a light to a scene whose origin is set. Throws InputError if its position overflows float.
 void add_light(Scene& scene, const WorldPointLight& light, const std::string& file);
 
-/// Adds triangles (0, 1, 2) and (0, 2, 3) of `corners`, the material, and an object of this name.
+/// Adds triangles (0, 1, 2) and (0, 2, 3) of `corners`, the material, and an object named after it.
 void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, const Material& material);
 
 /// Returns a 64-bit digest, as 16 hexadecimal digits, of a scene's geometry, materials, textures,

@@ -58,7 +58,7 @@ Neighbours neighbours(double coordinate, int size, Wrap wrap, bool is_nearest) {
   return {wrapped(first), wrapped(first + 1), is_nearest ? 0.0 : weight};
 }
 
-/// Returns whether the bytes begin like a format that Texture::load() supports. The library has
+/// Returns whether the bytes begin like a format that Texture::load() supports. stb_image reads
 /// more formats, but hangs on some Radiance headers. TGA is detected by valid header fields.
 bool is_known_format(std::string_view bytes) {
   using namespace std::string_view_literals;
@@ -138,7 +138,7 @@ glm::dvec3 Texture::mean_color() const {
   return sum / static_cast<double>(texels_.size());
 }
 
-/// Interpolates value(texel) bilinearly.
+/// Interpolates value(code) of the texels' codes bilinearly, channel by channel.
 template <class TexelValue>
 glm::vec3 Texture::between(const glm::dvec2& uv, const Sampling& sampling,
                            const TexelValue& value) const {

@@ -45,7 +45,7 @@ class Texture {
   [[nodiscard]] static Texture decode(std::string_view bytes, const std::string& name,
                                       Content content = Content::kColour);
 
-  /// Returns the smallest red code, from 0 to 1.
+  /// Returns the smallest red code of all texels, scaled to [0, 1].
   [[nodiscard]] double min_code() const;
 
   /// Returns the mean scene-linear colour of all texels.

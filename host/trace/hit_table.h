@@ -15,7 +15,7 @@
 
 namespace raygate {
 
-/// A column of the table, or the columns of a vector.
+/// A column of the table. kPoint, kUv and kNormal stand for the columns of a vector.
 enum class HitColumn {
   kRay,       ///< index of the ray, from 0
   kHit,       ///< 1: a hit; 0: a miss, and the other columns are -1, inf or nan
@@ -39,8 +39,8 @@ enum class Hits {
 };
 
 /// Returns the columns of these names ("ray", "t" ...), or the default ones if `names` is empty.
-/// Throws InputError "--columns: found ..., expected ..." (`dashes` replaces "--") for a name that
-/// is unknown, repeated or not available with `hits`.
+/// Throws InputError "--columns: found ..., expected ...", with `dashes` in place of "--", for a
+/// name that is unknown, repeated or not available with `hits`.
 [[nodiscard]] std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
                                                 const std::string& dashes);
 
@@ -66,7 +66,7 @@ enum class TableFormat { kCsv, kBinary };
 /// Formats hits as rows of a table. CSV numbers are the shortest decimals that round-trip.
 class HitTable {
  public:
-  /// The references must outlive this object.
+  /// `scene` and `bvh` must outlive this object.
   HitTable(const Scene& scene, const Bvh& bvh, std::vector<HitColumn> columns, TableFormat format)
       : scene_(scene), bvh_(bvh), columns_(std::move(columns)), format_(format) {}
 

@@ -27,8 +27,8 @@ struct RayTable {
 
   /// Adds the ray P = origin + t direction with hits 0 < t < limit, in the file's coordinates. The
   /// direction can have any length; a zero direction hits nothing. Origins are rounded to binary64
-  /// after subtracting the scene's origin. Returns null or, for an invalid ray, which is not added,
-  /// the message "found ..., expected ...".
+  /// after subtracting the scene's origin. Returns null. For an invalid ray, adds nothing and
+  /// returns the message "found ..., expected ...".
   const char* add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
                   const glm::dvec3& scene_origin);
 
@@ -47,10 +47,10 @@ struct RayTable {
 };
 
 /// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or
-/// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add). Numbers are separated by commas; in a line without
-/// commas by semicolons; without either by spaces and tabs. Spaces and quotes around numbers, a
-/// byte order mark, empty lines, lines that begin with # and one header without a number are
-/// allowed. A header that names these columns in another order is an error.
+/// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add). Numbers are separated by commas, in a line without
+/// commas by semicolons, and in a line without both by white space. Spaces and quotes around
+/// numbers, a byte order mark, empty lines, lines that begin with # and one header without a number
+/// are allowed. A header that names these columns in another order is an error.
 class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".

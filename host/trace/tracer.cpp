@@ -48,7 +48,7 @@ void find_one(Desk& desk, Hits asked, const Bvh& bvh, const HitTable& answers) {
   desk.next = count;
 }
 
-/// Makes a row for each hit, up to about kManyRows bytes: all rows of a block may exceed memory.
+/// Makes rows of all hits until they take about kManyRows bytes: a block's rows may exceed memory.
 void find_all(Desk& desk, const Bvh& bvh, const HitTable& answers) {
   for (; desk.next < desk.block.rays.size() && desk.rows.size() < kManyRows; ++desk.next) {
     RayWork work;

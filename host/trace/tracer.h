@@ -19,7 +19,7 @@ struct TraceCounts {
   std::uint64_t rounded = 0;  ///< number of rays that were rounded
 };
 
-/// Replaces a block by the next rays, at most this number; returns false at the end.
+/// Replaces a block by the next rays, at most the given number; returns false at the end.
 using ReadRays = std::function<bool(std::size_t, RayTable&)>;
 
 /// Finds the nearest hit of each ray of a block, or the first hit found if `any`. `work` is empty

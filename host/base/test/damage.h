@@ -14,14 +14,14 @@ namespace raygate::test {
 /// Damages files at random. The same seed gives the same damage.
 class Damage {
  public:
-  /// Inserted text is one of `splinters`, words of the file format, or a number hard to parse.
+  /// Inserted text is chosen from `splinters` (words of the format) and from numbers hard to parse.
   explicit Damage(std::uint64_t seed, std::span<const char* const> splinters = {})
       : random_(seed), splinters_(std::begin(kNumbers), std::end(kNumbers)) {
     splinters_.insert(splinters_.end(), splinters.begin(), splinters.end());
   }
 
-  /// Returns `bytes` with one to four damages. If `front` is not 0, about half of them are in the
-  /// first `front` bytes, such as a header.
+  /// Returns `bytes` with one to four damages. If `front` is not 0, about half of the damages are
+  /// in the first `front` bytes, such as a header.
   std::string operator()(std::string bytes, std::size_t front = 0) {
     for (std::size_t times = 1 + below(4); times > 0 && !bytes.empty(); --times) {
       const bool is_front = front > 0 && below(2) == 0;

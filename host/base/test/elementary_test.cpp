@@ -13,7 +13,7 @@
 namespace raygate {
 namespace {
 
-/// A number of 200 bits.
+/// A number with 200 significant bits.
 class Exact {
  public:
   explicit Exact(double x) {
@@ -24,7 +24,7 @@ class Exact {
   Exact& operator=(const Exact&) = delete;
   ~Exact() { mpfr_clear(value_); }
   mpfr_ptr get() { return value_; }
-  /// Returns the magnitude of x minus this number, which is overwritten.
+  /// Returns the magnitude of x minus this number. Overwrites this number.
   double error_of(double x) {
     mpfr_d_sub(value_, x, value_, MPFR_RNDN);
     return std::abs(mpfr_get_d(value_, MPFR_RNDN));
@@ -169,7 +169,7 @@ TEST(Srgb, ChangesCodeHalfwayBetweenTwo) {
   }
 }
 
-/// Compares with the standard's formula, from linear values to codes, in double on a fine grid.
+/// Compares codes of linear values with the standard's formula, computed in double on a fine grid.
 TEST(Srgb, AgreesWithTheForwardFormula) {
   for (int i = 0; i <= 100000; ++i) {
     const float linear = static_cast<float>(i) / 100000.0f;

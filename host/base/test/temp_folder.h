@@ -27,14 +27,14 @@ std::string input_error_of(const Work& work) {
   return "(read)";
 }
 
-/// A new folder.
+/// A new folder, which the destructor removes.
 class TempFolder {
  public:
   static std::filesystem::path on_disk() { return std::filesystem::temp_directory_path(); }
 
   /// Makes a folder in memory (/dev/shm) if possible, otherwise on disk.
   TempFolder() : TempFolder(access("/dev/shm", W_OK) == 0 ? "/dev/shm" : on_disk()) {}
-  /// Makes a folder that other users may read.
+  /// Makes a folder in `parent` that other users may read.
   explicit TempFolder(const std::filesystem::path& parent) {
     std::string name = (parent / "raygate_test_XXXXXX").string();
     if (!mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
@@ -58,7 +58,7 @@ class TempFolder {
     }
     return file;
   }
-  /// Returns the bytes of a file, or none if there is no such file.
+  /// Returns the bytes of a file, or an empty string if there is no such file.
   [[nodiscard]] std::string read(const std::string& name) const {
     std::ifstream file(path_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -74,7 +74,7 @@ class TempFolder {
   }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-  /// Returns input_error_of(work), without the folder if the text begins with it.
+  /// Returns input_error_of(work). If the text begins with the folder's path, removes the path.
   template <class Work>
   [[nodiscard]] std::string error_of(const Work& work) const {
     const std::string error = input_error_of(work), folder = path_.string() + "/";

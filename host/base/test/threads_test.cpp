@@ -1,4 +1,4 @@
-// Work on several threads ends early if one of them throws, or if the caller's check does.
+// Work on several threads ends early if an item throws, or if the caller's check throws.
 #include "host/base/threads.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kItems = 100000;
 
-/// Calls for_each_on_threads, which must throw, and returns how many items were begun.
+/// Calls for_each_on_threads, which must throw. Returns the number of items that were begun.
 template <class Work>
 std::size_t begun_until_error(int threads, const Work& work) {
   std::atomic<std::size_t> begun = 0;

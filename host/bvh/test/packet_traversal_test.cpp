@@ -17,8 +17,8 @@ namespace {
 
 using test::Random;
 
-/// Sends up to eight rays through the BVH. Expects that a ray visits every triangle that it hits,
-/// or only a nearest one if `shorten`, when hits shorten rays. Returns the number of hits.
+/// Sends up to eight rays through the BVH. Expects that a ray visits every triangle that it hits.
+/// If `shorten`, hits shorten rays, and one nearest triangle is enough. Returns the number of hits.
 int expect_nothing_culled(const Bvh& bvh, const std::vector<Ray>& rays, bool shorten) {
   int found = 0;
   LaneMask left = (1u << rays.size()) - 1;

@@ -9,7 +9,7 @@
 namespace raygate {
 namespace {
 
-/// Returns random words. Many are equal to an earlier word, adjacent to it, or share an exponent.
+/// Returns random words. Many are equal to an earlier word, adjacent to it, or have its exponent.
 test::Patterns patterns(std::mt19937_64& random) {
   test::Patterns words{};
   const auto below = [&](std::size_t n) { return random() % n; };

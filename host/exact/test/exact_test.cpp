@@ -25,7 +25,7 @@ struct Case {
 };
 
 /// Returns a ray and a triangle of any size, mostly difficult: aimed at a vertex or an edge, a
-/// sliver, far away, or with few bits, so that exact ties are common. Half are in binary64.
+/// sliver, far away, or with few bits, so that ties are common. Half of the cases are in binary64.
 Case hard_case(Random& random) {
   const bool is_binary64 = random.below(2) == 0;
   const float size = std::ldexp(1.0f, random.below(201) - 100);

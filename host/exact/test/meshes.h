@@ -23,7 +23,7 @@ inline float float_dot(const glm::vec3& i, const glm::vec3& e) {
   return (i.x * e.x + i.y * e.y) + i.z * e.z;
 }
 
-/// A generator that prints its seed: RAYGATE_SEED, or 1.
+/// A random generator. The seed, which it prints, is environment variable RAYGATE_SEED or 1.
 class Random {
  public:
   Random() {

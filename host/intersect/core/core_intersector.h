@@ -58,8 +58,8 @@ struct CoreResult {
   std::uint32_t line = 0;      ///< kEnd with kMemory: the line read
 };
 
-/// Statistics of a core since its construction. A test is one triangle line that the triangle test
-/// processes; a depth doubt is a sure hit reported as a doubt. Clocks are 0 without simulation.
+/// Statistics of a core since its construction. `tests` counts triangle lines that the triangle
+/// test processed, `depth_doubts` sure hits reported as doubts. Clocks are 0 without simulation.
 struct CoreCounters : HitCounters {
   std::uint64_t rays = 0;
   std::uint64_t nodes = 0;      ///< node lines processed by the box unit

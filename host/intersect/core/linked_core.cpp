@@ -96,7 +96,7 @@ class SerialLink : public WordLink {
     throw InputError(port_.string() + ": " + what);
   }
 
-  /// Returns the result of a read or write, or 0 if nothing was possible yet.
+  /// Returns the byte count of a read or write; 0 if it must be repeated. Throws for other errors.
   [[nodiscard]] std::ptrdiff_t checked(std::ptrdiff_t count) const {
     if (count < 0 && errno != EAGAIN && errno != EINTR) fail(std::strerror(errno));
     return std::max<std::ptrdiff_t>(count, 0);

@@ -30,7 +30,7 @@ CoreResult unpack_result(const Words& words) {
   return result;
 }
 
-/// Returns the message of core_link that sends a ray.
+/// Returns the message that sends a ray to hw/board/core_link.sv.
 [[nodiscard]] std::array<std::uint32_t, 11> ray_message(const CoreRay& ray);
 
 /// An ordered link of words to and from a board (hw/board/core_link.sv).
@@ -51,8 +51,8 @@ class WordLink {
 };
 
 /// A ray core with its own memory, behind a link. Sends the memory when it has changed, then rays.
-/// At most `rays` (the core's capacity) are in flight, since a link may have no back-pressure.
-/// Counts only rays, tests, doubts and clocks.
+/// At most `rays` (the core's capacity) are in flight, since a link may have no back-pressure. Of
+/// CoreCounters, only rays, tests, doubts and clocks are counted.
 class LinkedCore : public CoreUnit {
  public:
   LinkedCore(std::unique_ptr<WordLink> link, std::size_t rays)

@@ -118,7 +118,7 @@ class ImageWriter {
     return bounds;
   }
 
-  /// Decides which nodes are leaves. Returns the sum of the areas of the triangles' boxes.
+  /// Sets leaf_ for the nodes of a subtree. Returns the sum of the areas of its triangles' boxes.
   double plan(Ref ref) {
     if (tree_.is_leaf(ref)) return bounds(ref).area();
     const double sum = plan(tree_.nodes[ref].child[0]) + plan(tree_.nodes[ref].child[1]);
@@ -127,7 +127,7 @@ class ImageWriter {
     return sum;
   }
 
-  /// Returns the children of the wide node `ref`, by repeatedly opening the largest binary node.
+  /// Returns the children of wide node `ref`: repeatedly splits the child with the largest box.
   [[nodiscard]] std::vector<Ref> children(Ref ref) const {
     std::vector<Ref> refs = {ref};
     while (refs.size() < NodeLine::kChildren) {

@@ -68,7 +68,7 @@ struct NodeLine {
     std::uint32_t kind = kAbsent;
     std::array<std::uint8_t, 3> low{}, high{};
 
-    /// Returns the number of the child's lines in memory.
+    /// Returns the number of memory lines that the child takes.
     [[nodiscard]] std::uint32_t size() const { return kind == kInner ? 1 : kind; }
   };
 
@@ -94,7 +94,7 @@ struct TriangleLine {
   [[nodiscard]] MemoryLine line() const;
 };
 
-/// The memory lines of a scene, with the root at kRoot. Triangles are ranked by their index in the
+/// The memory lines of a scene, with the root at kRoot. A triangle's rank is its index in the
 /// scene. The image does not depend on the number of threads.
 class MemoryImage {
  public:

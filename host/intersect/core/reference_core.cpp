@@ -185,9 +185,9 @@ std::uint32_t t_error_exponent(const SetUpRecord& set_up, std::uint32_t grazing)
 
 namespace {
 
-/// Compares a sure hit with the nearest one. Keeps the hit with the smaller upper bound of t, which
-/// becomes the limit. Returns the other hit's triangle, which the host must test, or kNoTriangle if
-/// that hit is surely farther.
+/// Compares a sure hit with `nearest`. Keeps in `nearest` the hit with the smaller upper bound of
+/// t, which becomes `limit`. Returns the triangle of the other hit, which the host must test, or
+/// kNoTriangle if that hit is surely farther.
 std::uint32_t take(const CoreResult& hit, CoreResult& nearest, float& limit) {
   constexpr std::uint32_t kInfinity = 0x7F800000;
   const auto word = [](float x) { return std::bit_cast<std::uint32_t>(x); };
@@ -274,7 +274,7 @@ struct RayTrace {
     }
   }
 
-  /// Tests the leaves of a node, and returns its inner nodes.
+  /// Tests the leaves that the ray enters below a node. Returns the inner nodes that it enters.
   OpenGroup enter(const NodeLine& node) {
     OpenGroup inside{enter_boxes(node, {ray.ray.origin, 1.0f / ray.ray.direction, limit}), {}};
     const BoxGroup& group = inside.group;
@@ -324,7 +324,7 @@ struct RayTrace {
     }
   }
 
-  /// Reports a doubt to the host or, if exact, resolves it as hw/ray_core/exact_resolver.sv does.
+  /// Reports a doubt to the host or, if `exact`, resolves it as hw/ray_core/exact_resolver.sv does.
   void report(std::uint32_t line, bool is_hit) {
     if (!exact) {
       results.push_back({.kind = CoreResult::Kind::kDoubt, .tag = ray.tag, .triangle = line});
@@ -334,7 +334,7 @@ struct RayTrace {
     }
   }
 
-  /// Returns whether the nearest hit among the doubts is nearer than the sure hit or the limit.
+  /// Returns whether `candidate` is nearer than the sure hit or, if there is none, than the limit.
   [[nodiscard]] bool is_candidate_nearest() const {
     if (candidate == CoreRay::kNoTriangle) return false;
     return result.found ? is_nearer(candidate, result.triangle)
@@ -346,7 +346,7 @@ struct RayTrace {
     return widened(TriangleLine(lines[line]).corners);
   }
 
-  /// Returns whether the hit of `line` is nearer than that of `other` or, at equal t, ranks lower.
+  /// Returns whether the hit of `line` is nearer than that of `other`, or of lower rank at equal t.
   [[nodiscard]] bool is_nearer(std::uint32_t line, std::uint32_t other) const {
     const int order = compare_hits(ray.ray, corners_of(line), corners_of(other));
     return order < 0 ||

@@ -39,8 +39,8 @@ struct BoxGroup {
 /// Returns whether the entry is surely beyond `limit`, which is at least 0; +infinity: no limit.
 [[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
 
-/// A record computed in binary32, with larger bounds than make_record's. d is NaN if the sign of d
-/// is not sure, or if N or d is too inaccurate for a sure hit.
+/// A polygon record computed in binary32, with larger bounds than make_record's. Its d is NaN if
+/// the sign of d is not sure, or if the normal N or d is too inaccurate for a sure hit.
 struct SetUpRecord {
   PolygonRecord record;
   std::uint32_t normal_error = 0;    ///< number of bits that cancelled in N, unless d is NaN

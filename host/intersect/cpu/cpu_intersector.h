@@ -44,7 +44,7 @@ class PointWriter {
   /// Returns the number of all hits that were written.
   [[nodiscard]] std::uint64_t written() const { return written_; }
 
-  /// Adds the hit of a ray with a primitive, for write() to write. count() must be below kMost.
+  /// Adds the hit of ray `number` with a primitive; write() writes it. count() must be below kMost.
   RAYGATE_INLINE void add(std::uint32_t number, std::uint32_t primitive) {
     std::uint16_t unused = 0xFFFF;
     std::uint16_t& plane = is_common_ ? last_[primitive % kPlanes] : unused;

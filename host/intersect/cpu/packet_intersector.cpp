@@ -92,7 +92,7 @@ struct ConeTraversal {
   [[nodiscard]] std::uint32_t number(int group, int lane) const {
     return first + static_cast<std::uint32_t>(group * kLanes + lane);
   }
-  /// Returns bounds of the nearest hit's t.
+  /// Returns bounds of t of a ray's nearest hit.
   [[nodiscard]] Interval t(int group, int lane) const {
     return {std::bit_cast<float>(low[group][lane]), std::bit_cast<float>(high[group][lane])};
   }
@@ -244,8 +244,8 @@ RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   walk.split |= 1u << group;
 }
 
-/// Returns the children that any of `rays`, in `groups`, may meet. Sets entry[i] to a lower bound
-/// of the distance at which a ray enters child i.
+/// Returns a mask of the children that any of `rays` may meet; `groups` are the groups of these
+/// rays. Sets entry[i] to a lower bound of the distance at which a ray enters child i.
 template <Vectors kCode>
 RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& node,
                                  std::uint64_t rays, LaneMask groups, FloatLanes& entry) {
@@ -352,7 +352,7 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
   }
 }
 
-/// Returns the dot products of eight directions and a plane of a record.
+/// Returns the dot products of eight directions with one plane of a triangle in a record.
 RAYGATE_INLINE FloatLanes side_of(const FloatLanes (&direction)[3], const QuadRecord& record,
                                   int plane, int triangle) {
   return (direction[0] * record.word(plane, 0, triangle) +
@@ -655,7 +655,7 @@ class PacketIntersector {
     });
   }
 
-  /// Returns the leaf's entry in the cache; computes it, replacing another leaf's, if needed.
+  /// Returns the leaf's entry in the cache. Computes it if missing, in place of another leaf's.
   RAYGATE_INLINE const CachedLeaf& cached(const BvhView& tree, const Bvh::Child& leaf) {
     CachedLeaf& cached = leaves_[leaf.first * 0x9E3779B1u >> (32 - kCacheBits)];
     if (cached.first == leaf.first) return cached;
@@ -683,8 +683,8 @@ class PacketIntersector {
     }
   }
 
-  /// Decides exactly whether a ray hits a primitive, unless `sure`, and whether this hit is the
-  /// nearest. `t` is read only if `sure`. Returns whether the primitive is the nearest hit now.
+  /// Decides exactly whether a primitive is the ray's nearest hit, and returns whether it is.
+  /// `sure`: the primitive is hit, at a distance in `t`; only the order of hits must be decided.
   bool resolve(ConeTraversal& walk, int group, int lane, std::int32_t primitive, bool sure,
                const Interval& t) {
     const std::uint32_t number = walk.number(group, lane);

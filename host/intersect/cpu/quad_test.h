@@ -42,8 +42,8 @@ namespace raygate {
 //
 // Sum: less than 8.02 u m S + 72.4 u^2 m^2. The code computes the bound b = m (8.5 u S + 2^-41 m),
 // where 2^-41 = 128 u^2. Rounding changes b by less than 12 u b. The code computes m as the largest
-// |Z_i| plus S. This is large enough up to 4 u m, because |(p-O)_x| is at most |X_i| + |Z_i| up to
-// the errors of step 1; the margin of b covers the 4 u m.
+// |Z_i| plus S. This may be too small by 4 u m: |(p-O)_x| exceeds |X_i| + |Z_i| at most by the
+// errors of step 1. The margin of b covers the 4 u m.
 //
 // Position on the z axis
 //
@@ -58,8 +58,8 @@ namespace raygate {
 //    Both sets of weights sum to 1, and D* > D' - 3 b: the error of z* is below 6 b R / (D' - 3 b).
 //    Each |U_i| is at most a product of two of the three |X_j| + |Y_j|: D' <= S^2 / 3 <= m S / 3.
 //    D differs from D' by at most 2 u D' < 0.1 b, so D' - 3 b > D - 3.2 b.
-//    R has an error of 2 u max |Z_i|. Its factor matters only below 1, since z* is also between the
-//    corners' z. So this error adds at most 2 u max |Z_i| to z*.
+//    R has an error of 2 u max |Z_i|. R's factor matters only if it is below 1, since z* is also
+//    between the corners' z. So this error adds at most 2 u max |Z_i| to z*.
 // 6. Each term has at most eight roundings: of Z_i, a product, two sums, two sums in D, a quotient,
 //    and the sum with the bound. Weights are positive and sum to 1: less than 9 u max |Z_i| in all.
 //    Underflow of a product adds 2^-150 / D' < 2^-70, because D' > 3 b > 2^-80. Three of these are
@@ -168,9 +168,9 @@ struct QuadSides {
   FloatQuad bound;            ///< b above; NaN if nothing is sure: comparisons with NaN are false
 };
 
-/// Returns which of 1 to 4 triangles the ray does not surely miss by its edges. Coordinate k of
-/// corner v of triangle i is corners[(3 v + k) count + i]; memory up to corners[8 count + 3] must
-/// be readable. If no part is rounded, kIsRounded makes no difference.
+/// Returns a mask of the 1 to 4 triangles that the ray may hit; by their edges, all others are sure
+/// misses. Coordinate k of corner v of triangle i is corners[(3 v + k) count + i]; memory up to
+/// corners[8 count + 3] must be readable. If no part is rounded, kIsRounded has no effect.
 template <bool kIsRounded = false>
 [[nodiscard]] RAYGATE_INLINE LaneMask find_sides(const ShearedRay& ray, const float* corners,
                                                  std::uint32_t count, QuadSides& sides,
@@ -369,7 +369,7 @@ RAYGATE_INLINE void make_quad_record(const glm::vec3& origin, const float* corne
   record.unsure = ~sign_mask(sure) & ((1u << count) - 1);
 }
 
-/// Sets the sign of d, -1 or 1, if float32 is not sure of it.
+/// Sets the sign of a triangle's d to `side`, -1 or 1, if float32 is not sure of it.
 RAYGATE_INLINE void set_side(QuadRecord& record, int triangle, int side) {
   if ((record.flip[triangle] != 0) == (side < 0)) return;
   record.flip[triangle] ^= std::numeric_limits<std::int32_t>::min();

@@ -31,9 +31,9 @@
 namespace raygate {
 namespace {
 
-/// State of one ray. Many rays are interleaved, so each step uses few cache lines. A step at a node
-/// reads the first line, and a step at a leaf the second. Both use the third line, with the bottom
-/// of `keys`, and the line with the bottom of `children`.
+/// State of one ray. Many rays are interleaved, so each step uses few cache lines: at a node the
+/// first line, at a leaf the second. Both kinds of steps also use the third line, which holds the
+/// bottom of `keys`, and the line with the bottom of `children`.
 struct alignas(64) RayTraversal {
   // Box tests, by axis. Inverses are those of PacketBounds, negated: then the instruction that
   // subtracts in (origin - near) * minus_inverse_near also loads the plane. near_at and far_at are
@@ -73,7 +73,7 @@ struct alignas(64) RayTraversal {
   [[nodiscard]] double t_scale() const {
     return kIsRounded ? exact_scale : std::abs(sheared.way);
   }
-  /// Set the bounds of the nearest hit or the limit, given as t or as depth.
+  /// Set `low`, `high` and `cutoff` to bounds of the nearest hit or limit, given as t or as depth.
   template <bool kIsRounded>
   RAYGATE_INLINE void end_at(const Interval& t) {
     const double scale = t_scale<kIsRounded>();
@@ -167,7 +167,7 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kLanesOf<Floats>],
   return sign_mask((largest >= 0x3F800000) & (largest < 0x40000000));
 }
 
-/// By mask of lanes: the indices of the set lanes in order, followed by negative values.
+/// Table by mask of lanes: the indices of the mask's lanes in order, followed by negative values.
 constexpr auto kNumbersOf = [] {
   std::array<std::array<std::int32_t, kLanes>, 1 << kLanes> numbers{};
   for (std::size_t mask = 0; mask < numbers.size(); ++mask) {
@@ -180,7 +180,7 @@ constexpr auto kNumbersOf = [] {
   return numbers;
 }();
 
-/// Sorts eight keys in descending order (Batcher's bitonic network); all but `count` are negative.
+/// Sorts eight keys in descending order (Batcher's bitonic network); only `count` are >= 0.
 RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count) {
   IntLanes other, larger, smaller;
   const auto compare = [&]() __attribute__((always_inline)) {
@@ -215,7 +215,7 @@ struct MetChildren {
   LaneMask mask;
 };
 
-/// Tests the ray against the boxes of its current inner node, which may be decoded into `room`.
+/// Tests the ray against the boxes of its current node; `room` is for a node of an instance.
 template <Vectors kCode, bool kIsRounded>
 RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk, Bvh::Node& room,
                                   MetChildren& met) {
@@ -358,8 +358,8 @@ class SingleRayIntersector {
     return true;
   }
 
-  /// Resolves a doubt about a triangle that the ray may hit or, if `sure`, does hit. Returns
-  /// whether the triangle is the nearest hit now.
+  /// Decides exactly whether a primitive is the ray's nearest hit, and returns whether it is.
+  /// `sure`: the primitive is hit; only the order of hits must be decided.
   bool resolve(RayTraversal& walk, std::uint32_t primitive, bool sure) {
     const ExactRay ray = exact_ray(walk.number);
     NearestHit best;

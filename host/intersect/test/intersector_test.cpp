@@ -39,7 +39,7 @@ class CheckIntersectorTest : public testing::Test {
     }
   }
 
-  /// Returns the message of the exception, or nothing if the intersectors agree.
+  /// Returns the message of CheckIntersector, or "" if the intersectors agree.
   std::string complaint(const FaultyIntersector::Fault& fault, const RayQuery& query) {
     CheckIntersector check(bvh_, std::make_unique<FaultyIntersector>(bvh_, fault),
                            test::model_intersector(bvh_));
@@ -112,7 +112,7 @@ Corners at_depth(float z) {
   return {glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)};
 }
 
-/// Returns a hit whose interval of t decides nothing.
+/// Returns a hit whose interval of t is too wide to decide any comparison.
 NearestHit hit_of(std::uint32_t primitive) { return {.primitive = primitive, .t = {0.0, 10.0}}; }
 
 // Five triangles: two nearest ones at the same depth, two an ulp farther, one far behind. They are

@@ -103,14 +103,14 @@ using BurstResults = std::vector<BurstResult>;
 ///   U_k = (E_kx Ix + E_ky Iy) + E_kz Iz,  V likewise with N,  t = d / V,  P_k = (d I_k) / V
 ///
 ///   U_k is sure if b_k < |U_k| < infinity (not with a NaN or negative b_k)
-///   miss   d is 0, or a sure U_k has the opposite sign of d
-///   hit    otherwise, if all U_k are sure, V is normal, has d's sign and an exponent at most 12
-///          below the largest exponent of N's words, and t is a positive normal number
-///   doubt  otherwise
+///   miss   d is 0, or a sure U_k has not the sign of d
+///   hit    no miss; all U_k are sure; V is normal, has d's sign and an exponent at most 12
+///          below the largest exponent of N's words; t is a positive normal number
+///   doubt  neither miss nor hit
 ///
-/// The error of t is 2^(6 + e) floats. Here e is how far V's exponent is below the largest of N's,
-/// or 0 (proof in hw/hit_test/hit_test_pkg.sv). Each burst keeps its hit with the smallest t, or
-/// the first of these. If a later hit and the kept hit are no more floats apart than the sum of
+/// The error of t is 2^(6 + e) floats. Here e is how far V's exponent is below the largest in N,
+/// or 0 (proof in hw/hit_test/hit_test_pkg.sv). Each burst keeps its hit with the smallest t (of
+/// equal ones, the first). If a later hit and the kept hit are no more floats apart than the sum of
 /// their errors, the hit that is not kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResult> {
  public:
@@ -187,7 +187,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
 
   [[nodiscard]] HitCounters counters() const override { return counters_; }
 
-  /// Returns the verdict on one test, as in a batch. Sets `distance` if the verdict is kHit.
+  /// Returns the verdict that a batch would give for this test. Sets `distance` if it is kHit.
   [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction,
                                     HitDistance& distance) const {
     const UnitVerdict inside = edges_verdict(record, direction);
@@ -197,9 +197,9 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return math_.is_normal(distance.t) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// Returns the verdict of the edges alone. kHit: the triangle is hit, if it is in front of the
-  /// origin (on the side of d's sign). If d is NaN, edges of opposite signs are a miss and
-  /// everything else is in doubt.
+  /// Returns the verdict of the edges alone. kHit: all edges surely have the sign of d, so the ray
+  /// hits the triangle in front of its origin. If d is NaN, edges of different signs give kMiss,
+  /// all other edges kDoubt.
   [[nodiscard]] UnitVerdict edges_verdict(const PolygonRecord& record,
                                           const glm::vec3& direction) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();

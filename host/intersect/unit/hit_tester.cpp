@@ -123,7 +123,7 @@ void SerialHitTester::collect(std::uint32_t index, const RayBundle& bundle) {
   }
 }
 
-/// Drops the sure hits among a burst's reports that are surely farther than another one.
+/// Drops each sure hit of a burst that is surely farther than another sure hit of this burst.
 void SerialHitTester::drop_farther(HitReports& reports, std::size_t first) {
   const std::span burst = std::span(reports).subspan(first);
   double nearest = std::numeric_limits<double>::infinity();  // upper bound of the nearest hit's t

@@ -68,7 +68,7 @@ class SerialHitTester : public HitTester {
   [[nodiscard]] HitCounters counters() const override;
 
  private:
-  /// A (ray, polygon) pair in the unit.
+  /// A (ray, polygon) pair that is sent to the unit.
   struct Pair {
     std::uint32_t bundle, lane, record;
     UnitVerdict verdict;

@@ -171,7 +171,7 @@ class UnitIntersector : public Intersector {
     return packets_[half.owner[report.bundle]].rays[report.lane];
   }
 
-  /// Resolves a report. If the report is the nearest hit so far, shortens or ends the ray.
+  /// Resolves a reported test. If it is its ray's nearest hit so far, shortens or ends the ray.
   void offer(const Half& half, const HitReport& report) {
     Packet& packet = packets_[half.owner[report.bundle]];
     const std::uint32_t number = ray_of(half, report);
@@ -188,8 +188,8 @@ class UnitIntersector : public Intersector {
     packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);
   }
 
-  /// Tests all other triangles of the bundle exactly after a sure hit was ignored: the burst may
-  /// not have reported hits that are surely farther than the ignored one.
+  /// Tests all other triangles of the bundle exactly after a sure hit was ignored (skip_ids): the
+  /// burst may not have reported hits that are surely farther than the ignored one.
   void offer_hidden(const Half& half, const HitReport& ignored) {
     const RayBundle& bundle = half.batch[ignored.bundle];
     if (ignored.hit.t.low >= query_.t_max_of(ray_of(half, ignored))) return;
@@ -200,7 +200,7 @@ class UnitIntersector : public Intersector {
     }
   }
 
-  /// Offers sure hits first, so that most doubts are surely farther and need no exact arithmetic.
+  /// Offers sure hits before doubts: then most doubts are surely farther and need no exact test.
   void merge(const Half& half) {
     for (const bool is_sure : {true, false}) {
       for (const HitReport& report : reports_) {

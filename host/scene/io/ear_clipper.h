@@ -79,7 +79,7 @@ class EarClipper {
     return false;
   }
 
-  /// Makes nodes [first, last) a subtree, whose root is the median along the box's longer side.
+  /// Makes nodes [first, last) a subtree. Its root is the median along their box's longer side.
   void build_tree(std::size_t first, std::size_t last) {
     if (last - first < 2) return;
     glm::dvec2 low = tree_[first].position, high = low;
@@ -195,9 +195,9 @@ class EarClipper {
     }
   }
 
-  /// Each round cuts off the ears among the candidates, but no two neighbours, which gives better
-  /// shapes than a fan. The neighbours are the candidates of the next round. A simple polygon has
-  /// an ear (Meisters 1975), also if it has corners on straight sides, which no ear may contain.
+  /// Each round cuts off ears among the candidates, but no two neighbours: that gives better shapes
+  /// than a fan. Neighbours of cut ears are the next candidates. A simple polygon has an ear
+  /// (Meisters 1975), also if it has corners on straight sides, which no ear may contain.
   PolygonKind clip_ears() {
     PolygonKind kind = PolygonKind::kSimple;
     std::size_t left = ring_.size();

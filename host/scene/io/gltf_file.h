@@ -42,7 +42,7 @@ inline double number_in(const Json& object, const char* key, double otherwise) {
   return value.is_number() ? value.get<double>() : otherwise;
 }
 
-/// Returns an integer; -1, which is no valid index, for another value or beyond the range of int.
+/// Returns an integer, or -1 (no valid index) for other values and for integers beyond an int.
 inline int index_of(const Json& value) {
   const double index = value.is_number_integer() ? value.get<double>() : -1.0;
   return std::abs(index) <= std::numeric_limits<int>::max() ? static_cast<int>(index) : -1;
@@ -249,8 +249,8 @@ class GltfFile {
     }
     return numbers;
   }
-  /// Returns the components of an optional attribute of `vertices` vertices; an empty list for
-  /// accessor -1 and, with a warning, for an accessor that cannot be read.
+  /// Returns the components of an optional attribute. Returns an empty list for accessor -1 and,
+  /// with a warning, for an accessor that cannot be read or has not `vertices` elements.
   [[nodiscard]] std::vector<double> optional_numbers(int accessor, std::size_t width,
                                                      const char* what, std::size_t vertices) {
     std::vector<double> all;
@@ -318,7 +318,7 @@ class GltfFile {
     return text;
   }
 
-  /// Decodes base64 (RFC 4648) up to the first character that is no digit.
+  /// Decodes base64 (RFC 4648) up to the first character that is no base64 digit.
   static std::string decode_base64(std::string_view text) {
     constexpr std::string_view kDigits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -345,7 +345,7 @@ class GltfFile {
     return contents;
   }
 
-  /// Returns the bytes of a data URI or of a file beside this one; nullopt if there are none.
+  /// Returns the bytes of a data URI, or of the file that the URI names; nullopt if there are none.
   std::optional<std::string_view> load(const std::string& uri) {
     constexpr std::string_view kBase64 = ";base64,";
     if (uri.starts_with("data:")) {
@@ -405,8 +405,8 @@ class GltfFile {
     return data.substr(offset, length);
   }
 
-  /// Returns the `count` elements, of `width` numbers each, of `part`: an accessor, or the indices
-  /// or values of a sparse one. Throws InputError if they exceed their buffer view.
+  /// Returns `count` elements of `width` numbers from `part`: an accessor, or the indices or values
+  /// of a sparse accessor. Throws InputError if the elements exceed the buffer view.
   [[nodiscard]] std::vector<double> stored_numbers(const Json& part, const Component& component,
                                                    std::size_t width, std::size_t count,
                                                    const std::string& place) const {

@@ -50,7 +50,7 @@ struct MeshInstance {
   std::uint32_t object;
 };
 
-/// The transform and the shape of a node's mesh.
+/// Transform, morph weights and skin that a node gives its mesh.
 struct Placement {
   glm::dmat4 world;                    ///< from the mesh's coordinates to the world's
   const std::vector<double>* weights;  ///< of the mesh's morph targets
@@ -111,7 +111,7 @@ class GltfReader {
     return found;
   }
 
-  /// Collects the nodes depth first, with their transforms to the world.
+  /// Collects the nodes from `roots` down, depth first, with their transforms to the world.
   void walk(const std::vector<int>& roots) {
     std::vector<std::pair<int, glm::dmat4>> steps;  // nodes, and the transforms of their parents
     const auto add = [&](const std::vector<int>& nodes, const glm::dmat4& parent) {
@@ -209,7 +209,7 @@ class GltfReader {
     return at->second;
   }
 
-  /// Includes an instance in the bounds for recentring.
+  /// Includes an instance in the bounds by which the scene is recentred.
   void expand_extent(const MeshInstance& instance) {
     const auto& [part, own_box, ignored] = shared(instance.shape);
     if (is_empty(part)) return;
@@ -331,8 +331,8 @@ class GltfReader {
     }
   }
 
-  /// Adds `more` vertices and corners to the count. Throws InputError if there are too many for a
-  /// file of this size: nodes with skins repeat their mesh.
+  /// Adds `more` to the number of vertices and corners. Throws InputError if that is too large for
+  /// the file's size: nodes with skins repeat their mesh, so a small file could fill the memory.
   void count(std::size_t more) {
     vertices_ += more;
     if (more > kMostVertices + file_.bytes || vertices_ > kMostVertices + file_.bytes) {

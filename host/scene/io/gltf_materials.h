@@ -43,8 +43,8 @@ class GltfMaterials {
     return converted_.emplace(material, converted).first->second;
   }
 
-  /// Makes vertex opacities multiply the opacity of a material, if it is masked or blended, and
-  /// returns true. Otherwise the material is opaque and remains unchanged.
+  /// If a material is masked or blended, makes vertex opacities multiply its opacity and returns
+  /// true. Returns false for an opaque material, which does not change.
   [[nodiscard]] bool use_vertex_opacity(int material) {
     const Converted converted = convert(material);
     Material& to = scene_.materials[converted.number];
@@ -58,7 +58,7 @@ class GltfMaterials {
 
   static double in_unit(double x) { return x >= 0.0 ? std::min(x, 1.0) : 0.0; }
 
-  /// Returns the first three numbers, clamped to [0, most]; 1 for missing ones.
+  /// Returns the first three numbers as a colour, clamped to [0, most]; missing numbers are 1.
   static glm::vec3 colour_of(const std::vector<double>& numbers, double most = 1.0) {
     glm::vec3 colour(1.0f);
     for (std::size_t k = 0; k < std::min<std::size_t>(numbers.size(), 3); ++k) {
@@ -89,7 +89,7 @@ class GltfMaterials {
     return index == -1 ? kDefault : file_.at(file_.list("materials"), index, "material");
   }
 
-  /// Returns the `size` numbers at a key; none if the key is absent or, with a warning, wrong.
+  /// Returns the `size` numbers at a key; none for a missing key or (with a warning) a wrong value.
   std::vector<double> numbers(const Json& object, const char* key, std::size_t size) {
     std::vector<double> numbers = numbers_in(object, key);
     if (numbers.size() == size) return numbers;
@@ -99,8 +99,8 @@ class GltfMaterials {
     return {};
   }
 
-  /// Returns a texture's decoded image; nullopt if images are not decoded or, with a warning, if no
-  /// image is named. Throws InputError for a damaged image and for too many pixels in all images.
+  /// Returns a texture's image; nullopt if images are not decoded or, with a warning, if the
+  /// texture names none. Throws InputError for a damaged image or if all images exceed kMostTexels.
   std::optional<Texture> picture(const Json& texture, Texture::Content content) {
     if (!textures_) return std::nullopt;
     const int source = index_in(texture, "source");
@@ -117,7 +117,7 @@ class GltfMaterials {
     return result;
   }
 
-  /// Returns the texture at a key, with its mapping; no texture, with a warning, if unreadable.
+  /// Returns the texture at a key, with its mapping; none, with a warning, if it is unreadable.
   MaterialMap map_of(const Json& parent, const char* key,
                      Texture::Content content = Texture::Content::kColour) {
     MaterialMap map;
@@ -183,8 +183,8 @@ class GltfMaterials {
     return map;
   }
 
-  /// Sets the opacity from the base colour's factor and texture, which blend or are a mask, and
-  /// from the opacities of vertices if `has_vertex_opacity`.
+  /// Sets the opacity from the alpha of the base colour's factor and texture, which is a mask or
+  /// blends, and from the opacities of vertices if `has_vertex_opacity`.
   void set_opacity(const Json& from, bool has_vertex_opacity, Material& material) {
     const std::string mode = text_in(from, "alphaMode");
     if (mode != "MASK" && mode != "BLEND") return;
@@ -264,7 +264,7 @@ class GltfMaterials {
   const bool textures_;
   std::map<int, Converted> converted_;  // by the material's index in the file
   std::array<int, 2> sets_{-1, -1};     // texcoord_sets of the material that is being read
-  /// Indices into Scene::textures by image of the file; kNoIndex: an image could not be read.
+  /// Index into Scene::textures, by image of the file and content; kNoIndex: could not be read.
   std::map<std::pair<int, Texture::Content>, std::uint32_t> texture_of_image_;
   std::int64_t texels_ = 0;  // decoded so far
 };

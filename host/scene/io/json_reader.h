@@ -35,7 +35,7 @@ class LineBuffer : public std::streambuf {
     char* const first = const_cast<char*>(text.data());  // never written
     setg(first, first, first + text.size());
   }
-  /// Returns the line of the last character read, which is one beyond the end of a number.
+  /// Returns the line of the last character read. For a number, that is the character after it.
   std::size_t line() {
     for (; counted_ + 1 < gptr(); ++counted_) line_ += *counted_ == '\n' ? 1 : 0;
     return line_;
@@ -66,8 +66,8 @@ inline Json parse_json(LineBuffer& text, const std::string& file,
 
 class JsonFile {
  public:
-  /// Parses `file`. Throws InputError, "file:line: what", if it cannot be read or is not JSON, and
-  /// for an object with a key twice.
+  /// Parses `file`. Throws InputError, "file:line: what", if it cannot be read or is not JSON, or
+  /// if an object has a key twice.
   explicit JsonFile(const std::filesystem::path& file) : name(file.string()) {
     constexpr std::size_t kLevels = 3;  // maximum depth of paths in lines_
     struct Level {
@@ -106,8 +106,8 @@ class JsonFile {
     });
   }
 
-  /// Returns the line on which an array or object starts or another value ends. For values more
-  /// than three levels deep, returns the line of an enclosing value.
+  /// Returns the line of a value: where an array or object starts, or where any other value ends.
+  /// For values more than three levels deep, returns the line of an enclosing value.
   [[nodiscard]] std::size_t line_of(std::string path) const {
     for (auto found = lines_.find(path);; found = lines_.find(path)) {
       if (found != lines_.end()) return found->second;
@@ -226,7 +226,7 @@ class JsonValue {
     if (xyz == glm::dvec3(0.0)) fail("a direction: not all three 0");
     return unit(xyz);
   }
-  /// Returns the colour of an array [red, green, blue] or of one number, none negative.
+  /// Returns a colour: an array [red, green, blue], or one number for all three. None is negative.
   [[nodiscard]] glm::vec3 light() const {
     const bool is_grey = value_->is_number();
     if (!is_grey && (!value_->is_array() || value_->size() != 3)) {

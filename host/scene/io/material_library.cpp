@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Statements of one number, and the ranges to which it is clamped.
+/// Statements with one number. kValues has the range to which each number is clamped.
 enum Value : std::size_t { kNs, kNi, kD, kTr, kIllum, kPr, kPm, kValueCount };
 struct ValueRange {
   std::string_view keyword;
@@ -45,7 +45,7 @@ struct Draft {
   std::string transparency_place;  // "file:line: " of the last Tr
   glm::vec3 ambient{};             // Ka, which has no use
 
-  /// Returns the member that a colour statement sets, or nullptr.
+  /// Returns the member that a colour statement sets, or nullptr for other keywords.
   glm::vec3* colour(std::string_view keyword) {
     return keyword == "Kd"   ? &material.diffuse
            : keyword == "Ks" ? &material.specular
@@ -55,7 +55,7 @@ struct Draft {
                              : nullptr;
   }
 
-  /// Returns the member that a map statement sets, or nullptr.
+  /// Returns the member that a map statement sets, or nullptr for other keywords.
   MaterialMap* map(std::string_view keyword) {
     return keyword == "map_Kd"   ? &material.diffuse_map
            : keyword == "map_Ke" ? &material.emission_map
@@ -75,7 +75,7 @@ class MtlReader {
   MtlReader(const std::filesystem::path& file, std::vector<std::string>& warnings)
       : lines_(file), folder_(file.parent_path()), warnings_(warnings) {}
 
-  /// Returns the materials in the file's order; of several with one name, only the first.
+  /// Returns the materials in the file's order. Of several with one name, keeps only the first.
   std::vector<Material> read() {
     while (auto statement = lines_.next()) read_statement(*statement);
     finish_material();

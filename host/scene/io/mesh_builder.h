@@ -38,8 +38,8 @@ class MeshBuilder {
   [[nodiscard]] const std::string& file_name() const { return file_name_; }
 
   void add_position(const glm::dvec3& position) { positions_.push_back(position); }
-  /// Sets the colour of the last position: sRGB codes from 0 to 1, or to 255 if any colour of the
-  /// file exceeds 1; scene-linear RGB after colors_are_linear().
+  /// Sets the colour of the last position: sRGB codes from 0 to 1, or from 0 to 255 if any colour
+  /// of the file exceeds 1. After colors_are_linear(), colours are scene-linear RGB.
   void add_color(const glm::vec3& color);
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
@@ -54,9 +54,9 @@ class MeshBuilder {
     set_last(tangents_, normals_.size(), tangent, glm::vec4(0.0f));
   }
 
-  /// Adds a polygon. build() leaves out polygons of fewer than three corners, and the normals or
-  /// texture coordinates of a face if one of its corners has none, with a warning. `line` is for
-  /// messages: 0 in a file without lines; for an array, the row counted from 1.
+  /// Adds a polygon. build() leaves out, with a warning, polygons of fewer than three corners, and
+  /// normals or texture coordinates that a face does not have at all corners. `line` is for
+  /// messages: 0 in a file without lines; in an array, the row, counted from 1.
   void add_face(std::span<const FaceCorner> corners, std::size_t line,
                 const FaceAttributes& attributes = {});
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }

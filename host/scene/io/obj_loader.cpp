@@ -113,7 +113,7 @@ class ObjReader {
     return {numbers_.data(), count};
   }
 
-  /// Takes v, v/vt, v//vn or v/vt/vn, perhaps followed by slashes.
+  /// Takes a face corner: v, v/vt, v//vn or v/vt/vn, perhaps followed by slashes.
   FaceCorner take_corner(Words& words) const {
     const std::string_view corner = words.peek();
     const auto fail = [&](const std::string& what) {
@@ -197,7 +197,7 @@ class ObjReader {
               "s " + in_quotes(word) + ", expected the number of a group or off; taken as off");
   }
 
-  /// Sets the object of the next face from the current names, each of which may be empty.
+  /// Sets the object of the next face from the current o and g names, each of which may be empty.
   void set_object() {
     if (object_is_known_) return;
     const std::string between = object_.empty() || group_.empty() ? "" : "/";

@@ -18,7 +18,7 @@
 namespace raygate {
 namespace {
 
-/// Both names of each NumberType.
+/// Both names that PLY has for each NumberType.
 constexpr std::string_view kTypeNames[][2] = {
     {"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"},   {"ushort", "uint16"},
     {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
@@ -36,7 +36,7 @@ struct Element {
   long long count = 0;
   std::vector<Property> properties = {};
 
-  /// Returns the named properties, marked as used; an empty list if one of them is missing.
+  /// Returns and marks the named properties; none if one is missing or not as `are_lists` says.
   std::vector<Property*> use(std::initializer_list<std::string_view> names, bool are_lists) {
     std::vector<Property*> used;
     for (const std::string_view name : names) {
@@ -190,7 +190,7 @@ class PlyReader {
     return number_at(bytes, type, format_ == Format::kBig);
   }
 
-  /// Reads the next values of all properties.
+  /// Reads one element: the values of all its properties.
   void read_row(Element& element) {
     row_line_ = words_.line();
     for (Property& property : element.properties) {

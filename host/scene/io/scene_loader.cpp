@@ -27,7 +27,7 @@ constexpr Kind kKinds[] = {{".obj", load_obj},
                            {".ply", load_ply},
                            {".stl", load_stl}};
 
-/// Returns the reader of models with the ending of `file`; without ending OBJ's. Throws InputError.
+/// Returns the reader for the ending of `file`, OBJ's for none. Throws InputError for others.
 auto loader_of(const std::filesystem::path& file) {
   const std::string ending = in_lower_case(file.extension().string());
   if (ending.empty()) return kKinds[0].load;

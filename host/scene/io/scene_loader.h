@@ -16,8 +16,8 @@ namespace raygate {
 /// Which vertices keep the rest of their binary64 coordinates (Scene::rests).
 enum class Vertices {
   kBinary64,  ///< all that do not fit binary32
-  /// All, if rounding to binary32 would move a corner by more than a hundredth of the size of a
-  /// face that has an area; otherwise none. This is enough for pictures.
+  /// All, if rounding to binary32 would move a corner by more than a hundredth of the size of its
+  /// face (other than a face without area); otherwise none. This is enough for pictures.
   kAsPictures,
   kBinary32,  ///< none
 };
@@ -44,15 +44,15 @@ struct LoadOptions {
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Returns the file that a model in `folder` names `name`, or nullopt. Tries `name` as it is, then
-/// without quotes and with '/' for '\', then without the '\' before spaces. At last, with a warning
-/// that begins with `place`, takes a file whose name equals the last part of `name` in any letter
-/// case, in the folder of `name` or in `folder`.
+/// without quotes and with '/' for '\', then without the '\' before spaces. At last takes a file
+/// whose name equals the last part of `name` in any letter case, in the folder of `name` or in
+/// `folder`, and adds a warning that begins with `place`.
 [[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
                                                              std::string_view name,
                                                              const std::string& place,
                                                              std::vector<std::string>& warnings);
 
-/// Throws InputError if no model has the ending of `file`.
+/// Throws InputError if the ending of `file` is not that of a model format.
 void require_model_ending(const std::filesystem::path& file);
 
 /// Returns the first existing file of STEM.obj, .glb, .gltf, .ply and .stl, or else "STEM.obj".
@@ -61,7 +61,7 @@ void require_model_ending(const std::filesystem::path& file);
 // Scene files: a scene.json, with the camera, lights, instances and options of a scene. The format
 // is described in host/docs/reference.md.
 
-/// A parallelogram that emits to both sides, with a corner and two edges from it.
+/// A parallelogram that emits light to both sides: a corner and the two edges from this corner.
 struct AreaLightSetting {
   glm::dvec3 corner{0.0};
   glm::dvec3 edges[2]{};     ///< not parallel
@@ -111,8 +111,8 @@ struct SceneFile {
 /// Loads a Wavefront OBJ file, with its MTL files (relative to its folder) and their textures.
 [[nodiscard]] Scene load_obj(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Returns the materials of an MTL file, in its order; if several have one name, only the first.
-/// Names textures relative to the file's folder, but loads none. Appends to `warnings`.
+/// Returns the materials of an MTL file in the file's order; of several with the same name, only
+/// the first. Names textures relative to the file's folder, but loads none. Appends to `warnings`.
 [[nodiscard]] std::vector<Material> read_mtl(const std::filesystem::path& file,
                                              std::vector<std::string>& warnings);
 

@@ -22,7 +22,7 @@ struct Edge {
   bool is_forward;  ///< from `low` to `high`
 };
 
-/// Returns a number for each position; equal positions have one number.
+/// Returns a number for each position; equal positions get the same number.
 std::vector<std::uint32_t> numbers_of(const Scene& scene) {
   std::vector<std::uint32_t> order(scene.positions.size()), numbers(scene.positions.size());
   std::iota(order.begin(), order.end(), 0u);

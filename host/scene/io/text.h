@@ -53,7 +53,7 @@ class Words {
     find_word(next_);
     return word;
   }
-  /// Takes the next word, and returns true, if it equals `word` (lower case) in any letter case.
+  /// If the next word equals `word` (lower case) in any letter case, takes it and returns true.
   bool take_if(std::string_view word) {
     const auto is_same = [](char small, char letter) { return small == in_lower_case(letter); };
     const bool is_equal = word == word_ || std::ranges::equal(word, word_, is_same);
@@ -66,7 +66,7 @@ class Words {
     fail((at_end() ? "the file ends too soon" : "found " + in_quotes(word_)) + ", expected " +
          in_quotes(word));
   }
-  /// Takes a number within the range of float. Throws InputError for other words, named `what`.
+  /// Takes a number within the range of float. Otherwise throws InputError, which names `what`.
   double number(std::string_view what) {
     const auto number = to_number(word_);
     if (!number || !(std::abs(*number) <= std::numeric_limits<float>::max())) {
@@ -173,7 +173,7 @@ class TextLines {
     return line.ends_with('\\') && find_comment(line) == line.npos;
   }
 
-  /// Takes one line without its end. There must be one.
+  /// Takes the next line, which must exist, without its end.
   std::string_view take_line() {
     const std::size_t length = std::min(text_.find('\n'), text_.size());
     const std::string_view line = text_.substr(0, length);

@@ -152,8 +152,8 @@ TEST(Lens, RaysOfAPointMeetWhereItIsInFocus) {
   EXPECT_EQ(through({{}, 0.1, {}}).focus(), 4.0) << "the target's distance";
 }
 
-/// GCC 12's vectoriser of neighbouring statements dropped the rounding of the origin to float
-/// (host/CMakeLists.txt).
+/// Regression test: the SLP vectoriser of GCC 12 dropped the rounding of the origin to float (see
+/// host/CMakeLists.txt).
 TEST(Lens, RaysGoFromTheirRoundedOriginToWhereItIsInFocus) {
   const double aperture = 0.37, focus = 7.0;
   const Camera camera = through({Projection::kPerspective, aperture, focus});

@@ -21,7 +21,7 @@ using test::tga;
 
 constexpr Texture::Texel kRed{255, 0, 0}, kGreen{0, 255, 0}, kBlue{0, 0, 255}, kGrey{128, 128, 128};
 
-/// Returns a texture with red and green above blue and grey.
+/// Returns a texture of 2 x 2 texels: red and green above blue and grey.
 Texture four() { return {2, 2, {kRed, kGreen, kBlue, kGrey}}; }
 
 const auto kGreyLight = static_cast<float>(srgb_to_linear(128));
@@ -86,7 +86,7 @@ class TextureFile : public testing::Test {
   [[nodiscard]] std::string error_of(const std::string& bytes) const {
     return folder_.error_of([&] { (void)Texture::load(folder_.write("t.png", bytes)); });
   }
-  /// Loads a triangle of material `a`, textured from (0, 0), (1, 0), (0, 1), and a plain one.
+  /// Loads a triangle of material `a` with texcoords (0, 0), (1, 0), (0, 1), and one without any.
   [[nodiscard]] Scene load(const std::string& mtl) const {
     folder_.write("m.mtl", "newmtl a\n" + mtl);
     return load_obj(

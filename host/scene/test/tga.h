@@ -8,7 +8,7 @@
 
 namespace raygate::test {
 
-/// The bytes of an uncompressed 24-bit TGA file, rows from the top.
+/// Returns the bytes of an uncompressed 24-bit TGA file, rows from the top.
 inline std::string tga(int width, int height, const std::vector<Texture::Texel>& texels) {
   const auto byte = [](int value) { return static_cast<char>(value); };
   std::string bytes(18, '\0');

@@ -29,7 +29,7 @@ class Table : public testing::Test {
     return all;
   }
 
-  /// Returns the error message for a table without the file's name.
+  /// Returns the part of a table's error message that follows the file's name.
   std::string refusal(const std::string& bytes) {
     const std::string error = folder_.error_of([&] { read_all(bytes); });
     EXPECT_TRUE(error.starts_with("rays")) << error;

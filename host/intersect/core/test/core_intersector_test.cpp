@@ -188,7 +188,7 @@ TEST_F(ExactCoreTest, LimitsSkippedTrianglesFirstHitsAndSourcesCount) {
   check(rays, {.t_max = limits, .source_ids = sources}, 8, true);
 }
 
-/// t is within its error bound, also for hits found exactly; kNoT marks hits without t in float32.
+/// t is fewer than 2^t_error floats from the exact t, also for exact hits; kNoT: t is unknown.
 TEST_F(ExactCoreTest, DistancesHoldTheirBounds) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 5'000);
   ReferenceCore core(ReferenceCore::kStackDepth, true);

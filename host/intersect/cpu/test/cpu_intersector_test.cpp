@@ -26,7 +26,7 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
     return mesh[random_.below(static_cast<int>(mesh.size()))];
   }
 
-  /// Returns a corner of the triangle, the middle of an edge, or the middle of the triangle.
+  /// Returns a random corner of the triangle, the middle of an edge, or the middle of the triangle.
   glm::dvec3 middle(const Corners& t) {
     const int corners = 1 + random_.below(3);
     glm::dvec3 sum(0.0);
@@ -62,7 +62,7 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
     return rays;
   }
 
-  /// Expects the hits of the reference model, the same bits with all vectors, and consistent
+  /// Expects the reference model's hits, the same bits with every instruction set, and consistent
   /// counts. Returns the number of hits.
   int compare(const Bvh& bvh, const std::vector<Ray>& rays, RayQuery query) {
     query.common_origin = GetParam();

@@ -90,7 +90,7 @@ class Quads : public testing::TestWithParam<int> {
   Random random_;
 };
 
-/// Compares verdicts on rays and triangles with the exact ones.
+/// Compares verdicts of test_quad with the exact predicates.
 class QuadTest : public Quads {
  protected:
   void expect_right(const Ray& given, const std::vector<Corners>& triangles) {

@@ -1,4 +1,4 @@
-// Every valid file loads right: each odd kind of OBJ, to the last bit.
+// Loads valid OBJ files of every unusual kind, and compares all bits.
 #include <gtest/gtest.h>
 
 #include "host/base/elementary.h"

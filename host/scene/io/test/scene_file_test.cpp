@@ -1,4 +1,4 @@
-// scene.json: every key; any other contents give a one-line error that names the place.
+// scene.json: reads every key. Invalid contents give a one-line error that names file and line.
 #include <gtest/gtest.h>
 
 #include "host/base/input_error.h"

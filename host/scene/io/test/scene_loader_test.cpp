@@ -1,4 +1,4 @@
-// Formats by file ending; damaged files of all formats give a sound scene or one clear line.
+// Formats by file ending. Damaged files of all formats give a valid scene or a one-line error.
 #include "host/scene/io/scene_loader.h"
 
 #include <gtest/gtest.h>
