@@ -18,7 +18,7 @@
 
 namespace raygate {
 
-/// Interface of an array for RtlBurstUnit.
+/// Interface through which RtlBurstUnit drives a simulated array.
 class BurstModel {
  public:
   virtual ~BurstModel() = default;
@@ -56,7 +56,7 @@ class BurstCursor {
   }
 
  private:
-  /// Moves to the first bundle that has a test, counting from the current bundle.
+  /// Skips bundles without tests, from the current bundle on.
   void settle() {
     while (!done() && (batch_[bundle_].record_count == 0 || batch_[bundle_].lanes == 0)) ++bundle_;
     lanes_ = done() ? 0 : batch_[bundle_].lanes;
@@ -71,7 +71,7 @@ class BurstCursor {
 struct LaneShare {
   std::vector<BurstCursor::Burst> bursts;  // all started bursts; the last may be incomplete
   std::size_t closed = 0;                  // number of bursts that have ended
-  std::size_t pointed = 0;                 // number of leading `results` that lack no point
+  std::size_t pointed = 0;                 // number of leading `results` that await no point
   BurstResults results;
 
   void clear() {
@@ -281,7 +281,7 @@ class ArrayModel : public BurstModel {
     port = static_cast<Port>((port & ~(1u << own)) | static_cast<unsigned>(value) << own);
   }
 
-  /// Returns lane n's share of the oldest batch whose share is not complete by `all`, or null.
+  /// Returns lane n's share of the oldest batch for which `all` returns false, or null if none.
   LaneShare* awaited(int n, bool (LaneShare::*all)()) {
     for (unsigned age = 0; age < in_flight_; ++age) {
       LaneShare& share = work_at(age).shares[n];
