@@ -108,8 +108,8 @@ enum Count {
 };
 
 /// An array of `lanes` lanes, built of models with kModelLanes lanes each. `Top` is Verilator's
-/// class of hit_test_array. Lanes share only the sums of their counters. Several models therefore
-/// have the results, clocks and counters of one model with all lanes. Throws std::runtime_error if
+/// class of hit_test_array. Its lanes are independent; only their counters are added up. Therefore
+/// several models behave like one model with all lanes. Throws std::runtime_error if
 /// the hardware is broken: no test is taken and no burst ends for kPatience clocks, or a result
 /// belongs to no burst.
 template <class Top, int kModelLanes = 1, class Numbers = Binary32Numbers>

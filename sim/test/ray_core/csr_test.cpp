@@ -1,4 +1,4 @@
-// Compares csr with a model of its header: every word read, and every output in every clock, under
+// Compares csr with a model of its documentation: words read, and all outputs in every clock, under
 // AXI4-Lite accesses with random pauses on every channel.
 #include <gtest/gtest.h>
 
