@@ -23,7 +23,7 @@ illum 1
 
 
 def write_block(file, first, centre, turned, half, low, high):
-    """Writes an upright block with a square base. Returns the number of the next vertex."""
+    """Writes an upright block on a square of side 2 `half`. `first`: number of its first vertex. Returns the number after its last."""
     for y in (low, high):
         for corner in range(4):
             angle = turned + math.pi / 4 + corner * math.pi / 2

@@ -23,7 +23,7 @@ def smooth(t):
 
 
 def octave(cells, waves, rng):
-    """Yields rows of heights at the (cells + 1)^2 corners of the grid, interpolated from a coarser random lattice."""
+    """Yields rows of heights at the (cells + 1)^2 corners of the grid, interpolated from random heights on `waves` x `waves` cells."""
     lattice = [[rng.uniform(-1, 1) for _ in range(waves + 2)] for _ in range(waves + 2)]
     steps = [divmod(i * waves, cells) for i in range(cells + 1)]
     steps = [(whole, smooth(part / cells)) for whole, part in steps]
@@ -34,7 +34,7 @@ def octave(cells, waves, rng):
 
 
 def landscape(cells, seed):
-    """Returns rows of heights, for a grid of side 1."""
+    """Returns rows of heights at the (cells + 1)^2 corners of a grid of side 1: the sum of all octaves."""
     rng = random.Random(seed)
     heights = [[0.0] * (cells + 1) for _ in range(cells + 1)]
     waves, height = 4, 0.08

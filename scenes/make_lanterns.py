@@ -27,7 +27,7 @@ RADIUS = 0.07  # radius of a lantern
 
 
 def write_lantern(file, first, centre, colour):
-    """Writes an octahedron. Returns the number of the next vertex."""
+    """Writes an octahedron. `first`: number of its first vertex. Returns the number after its last vertex."""
     file.write(f"o lantern{first}\nusemtl lantern{colour}\n")
     for axis in range(3):
         for sign in (1, -1):
@@ -41,7 +41,7 @@ def write_lantern(file, first, centre, colour):
 
 
 def places(strings, lanterns):
-    """Yields string and centre of each lantern. Strings sag between opposite walls; every second string is perpendicular to the others."""
+    """Yields (number of the string, centre) of each lantern. Strings sag between opposite walls, alternately along x and along z."""
     for string in range(strings):
         aside = HALF * (2 * (string + 0.5) / strings - 1)
         for i in range(lanterns):

@@ -62,7 +62,7 @@ def write_vertices(file, vertices, centre, radius):
 
 
 def write_faces(file, triangles, first):
-    """Writes the faces of a sphere. `first`: number of its first vertex. The number of its first normal is 1."""
+    """Writes the faces of a sphere. `first`: number of its first vertex. All spheres share the normals, numbered from 1."""
     for i, j, k in triangles:
         file.write(f"f {first + i}//{i + 1} {first + j}//{j + 1} {first + k}//{k + 1}\n")
 

@@ -80,7 +80,7 @@ def dot(a, b):
 
 
 def normal_at(patch, u, v):
-    """Returns the unit normal. At a pole, where a whole border is one point, returns the normal of a nearby point."""
+    """Returns the unit normal. At a pole, where one border of the patch shrinks to a point, returns the normal of a nearby point."""
     _, normal = surface(patch, u, v)
     if math.hypot(*normal) < 1e-9:
         _, normal = surface(patch, u + 1e-4 * (0.5 - u), 0.5)
@@ -90,7 +90,7 @@ def normal_at(patch, u, v):
 
 
 def outward_sign(patch):
-    """Returns 1 or -1, the factor that makes the cross product point out of the pot or the tube."""
+    """Returns 1 or -1: the factor that turns the cross product of `surface` away from the pot's middle, or from the tube's axis."""
     middle, normal = surface(patch, 0.5, 0.5)
     corners = [p for row in patch for p in row]
     if all(abs(p[2]) < 1 for p in corners):  # a tube: outwards is away from the tube's axis

@@ -1,9 +1,9 @@
-// The two kinds of arithmetic that the simulated units come with.
+// Selects structural or behavioural arithmetic for simulated units.
 #pragma once
 
 namespace raygate {
 
-/// hw/arith/arith_pkg.sv's Arith. Both give the same bits.
+/// Kind of arithmetic in a simulated unit. Both kinds compute the same bits.
 enum class Arith {
   kStructural,   ///< Booth recoding, carry-save trees, carry-select adders
   kBehavioural,  ///< the language's + and *, simulated faster

@@ -18,7 +18,7 @@
 
 namespace raygate {
 
-/// Interface of an array for RtlBurstUnit.
+/// Interface through which RtlBurstUnit drives a simulated array.
 class BurstModel {
  public:
   virtual ~BurstModel() = default;
@@ -56,7 +56,7 @@ class BurstCursor {
   }
 
  private:
-  /// Moves to the first bundle that has a test, counting from the current bundle.
+  /// Skips bundles without tests, from the current bundle on.
   void settle() {
     while (!done() && (batch_[bundle_].record_count == 0 || batch_[bundle_].lanes == 0)) ++bundle_;
     lanes_ = done() ? 0 : batch_[bundle_].lanes;
@@ -71,7 +71,7 @@ class BurstCursor {
 struct LaneShare {
   std::vector<BurstCursor::Burst> bursts;  // all started bursts; the last may be incomplete
   std::size_t closed = 0;                  // number of bursts that have ended
-  std::size_t pointed = 0;                 // number of leading `results` that lack no point
+  std::size_t pointed = 0;                 // number of leading `results` that await no point
   BurstResults results;
 
   void clear() {
@@ -108,8 +108,8 @@ enum Count {
 };
 
 /// An array of `lanes` lanes, built of models with kModelLanes lanes each. `Top` is Verilator's
-/// class of hit_test_array. Lanes share only the sums of their counters. Several models therefore
-/// have the results, clocks and counters of one model with all lanes. Throws std::runtime_error if
+/// class of hit_test_array. Its lanes are independent; only their counters are added up. Therefore
+/// several models behave like one model with all lanes. Throws std::runtime_error if
 /// the hardware is broken: no test is taken and no burst ends for kPatience clocks, or a result
 /// belongs to no burst.
 template <class Top, int kModelLanes = 1, class Numbers = Binary32Numbers>
@@ -281,7 +281,7 @@ class ArrayModel : public BurstModel {
     port = static_cast<Port>((port & ~(1u << own)) | static_cast<unsigned>(value) << own);
   }
 
-  /// Returns lane n's share of the oldest batch whose share is not complete by `all`, or null.
+  /// Returns lane n's share of the oldest batch for which `all` returns false, or null if none.
   LaneShare* awaited(int n, bool (LaneShare::*all)()) {
     for (unsigned age = 0; age < in_flight_; ++age) {
       LaneShare& share = work_at(age).shares[n];

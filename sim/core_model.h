@@ -19,8 +19,8 @@ namespace raygate {
 
 /// Cores of class `Top`, each in a `Holder` (see CorePort), clocked together. The cores take turns
 /// at one memory port, which accepts one request and returns one line per clock. Throws
-/// std::runtime_error if a core is broken: no line is requested and no test or ray ends for longer
-/// than queued exact decisions can take, a ray ends twice, or a line in flight is not reported.
+/// std::runtime_error if a core is broken: it makes no progress for longer than patience(), ends a
+/// ray twice, or reports that no line is in flight although one is.
 template <class Top, template <class> class Holder = Model>
 class CoreModel : public CoreUnit {
  public:

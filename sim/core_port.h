@@ -89,12 +89,12 @@ class CorePort {
     put_ray(*model_, ray);
     ++rays_;
   }
-  /// Returns the number of rays offered whose ends have not been taken.
+  /// Returns the number of rays offered whose final results have not been taken.
   [[nodiscard]] int rays() const { return rays_; }
 
   // ---- Results
 
-  /// Sets the port's ready input; returns whether a result is taken in this clock.
+  /// Sets the result port's ready input; returns whether a result is taken in this clock.
   bool take_result(bool ready) {
     model_->result_ready_i = ready;
     const bool taken = ready && model_->result_valid_o != 0;
@@ -113,7 +113,7 @@ class CorePort {
   [[nodiscard]] std::uint32_t line() const { return model_->read_line_o; }
   [[nodiscard]] std::uint64_t tag() const { return model_->read_id_o; }
   void set_read_ready(bool ready) { model_->read_ready_i = ready; }
-  /// Returns whether a line can be put at the port.
+  /// Returns whether put() may be called: the core has taken the line put before.
   [[nodiscard]] bool has_room() const { return model_->line_valid_i == 0; }
   void put(const MemoryLine& line, bool is_error, std::uint64_t tag) {
     model_->line_valid_i = 1;

@@ -1,4 +1,4 @@
-// The memory behind a ray core in simulation: latency, bandwidth, a cache, order.
+// Memory of a simulated ray core, with latency, limited bandwidth, a cache and reordered answers.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace raygate {
 
-/// Memory of numbered lines, returned with their request's tag. One request, one line per clock.
+/// Memory of numbered lines. Takes a request and returns a line, with its request's tag, per clock.
 class MemoryModel {
  public:
   explicit MemoryModel(const MemoryTiming& timing)
@@ -76,7 +76,7 @@ class MemoryModel {
     std::uint32_t line;
     std::uint64_t tag;
 
-    /// Orders a queue so that its top is the earliest.
+    /// Orders std::priority_queue so that its top is the line due first.
     friend bool operator<(const Due& a, const Due& b) {
       return a.at != b.at ? a.at > b.at : a.number > b.number;
     }

@@ -22,8 +22,8 @@ inline std::unique_ptr<VerilatedContext> make_context() {
 }
 
 /// One Verilated model `Top` (a class that Verilator made) in a context of its own, so that each
-/// thread may have one. Ports are reached by `model->port`. Must not be copied or moved: waves and
-/// contexts keep its address.
+/// thread may have one. Ports are reached by `model->port`. Must not be copied or moved: a waveform
+/// and the context keep its address.
 template <class Top>
 class Model {
  public:
@@ -59,8 +59,8 @@ class Model {
   /// Simulates one clock cycle: a rising edge with the present inputs, then the falling edge. The
   /// outputs read afterwards are those between this rising edge and the next one.
   ///
-  /// At a falling edge the model only records that the clock is low. If the model's ___024root.h of
-  /// Verilator 5.006 is included, the record is written directly and the evaluation is skipped.
+  /// The falling edge changes only Verilator's record of the clock's level. If the model's
+  /// ___024root.h (Verilator 5.006) is included, clock() writes this record itself: that is faster.
   void clock() {
     if constexpr (requires(Top top) { top.rootp->__Vtrigrprev__TOP__clk_i = 0; }) {
       edge(1);

@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// Interface of a unit for RtlPlaneUnit.
+/// Interface through which RtlPlaneUnit drives a simulated unit.
 class PlaneModel {
  public:
   virtual ~PlaneModel() = default;

@@ -18,8 +18,8 @@ struct BurstBatch {
 /// Makes random batches from a seed. Of the records, about
 /// * 1/2 are triangles that some of the rays hit, also at vertices, at edges and at grazing angles;
 /// * 1/4 are such triangles with changed words: random bits, special values (zeros, subnormals,
-///   infinities, NaN, extremes), bounds within a float of a ray's |U|, scaled d or N;
-/// * 1/8 are copies of the record before, with d at most 2,048 floats away, for near ties;
+///   infinities, NaN, extremes), bounds at most one float from a ray's |U|, d or N times 2^k;
+/// * 1/8 are copies of the preceding record, with d moved by at most 2,048 floats: near ties;
 /// * 1/8 are random bits.
 class RandomBursts {
  public:

@@ -16,7 +16,7 @@ struct CoreStalls {
   std::uint64_t seed = 0;
 };
 
-/// Rays in flight in a core, and in a board's core.
+/// Maximum number of rays in flight in a ray_core by default, and in the core of a board.
 inline constexpr int kTableRays = 64, kBoardRays = 16;
 
 /// Number and kind of the cores that share one memory port.

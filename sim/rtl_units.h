@@ -9,7 +9,7 @@
 
 namespace raygate {
 
-/// Interface of a Verilated unit, of either kind of arithmetic.
+/// Interface of a Verilated hit_test_unit, with structural or behavioural arithmetic.
 class PlaneModel;
 
 /// hw/hit_test/hit_test_unit.sv in binary32, rounded to nearest even. Tests follow each other
@@ -34,7 +34,7 @@ struct BurstStalls {
   std::uint64_t seed = 0;
 };
 
-/// Interface of a Verilated array.
+/// Interface of a Verilated hit_test_array.
 class BurstModel;
 
 /// hit_test_array of up to 32 lanes: one Verilated lane, instantiated many times. Not thread-safe:
@@ -47,7 +47,7 @@ class RtlBurstUnit : public BurstUnit {
   explicit RtlBurstUnit(std::unique_ptr<BurstModel> model);  ///< an array of another format
   ~RtlBurstUnit() override;
 
-  /// In the hardware, the tests of a second batch follow the first batch's tests without a gap.
+  /// A second batch may be started: in the hardware, its tests follow the first's without a gap.
   void start(std::span<const RayBundle> batch) override;
   void finish(BurstResults& results) override;
   [[nodiscard]] std::size_t enough_tests() const override { return enough_tests_; }

@@ -14,7 +14,8 @@ PORT = re.compile(r"^  \\(\S+) +\S+ +\S+ +([01x]+)$", re.M)
 
 @dataclasses.dataclass(frozen=True)
 class Proof:
-    """A proof or a check. `quick`: takes well under half a minute and is also run by `make test`. `long`: runs only on request."""
+    """A proof or a check. `work` returns the result, and whether an earlier run kept it. `quick`: takes well under half a minute, and
+    is also run by `make test`. `long`: runs only on request."""
 
     name: str
     claim: str
@@ -33,10 +34,10 @@ Prepare = Callable[[list[pathlib.Path]], str]  # returns, for RTL files, Yosys's
 
 
 def opened(name: str, wires: str, memories: str = "", **parameters: object) -> Prepare:
-    """Returns a Prepare that makes module opened_NAME of module `name`: flat, with inner wires as outputs, for use in invariants.
+    """Returns a Prepare that makes a module opened_NAME from module `name`: flattened, with inner wires as outputs, for use in invariants.
 
     `wires`: the names of these wires, as Yosys patterns. `memories`: name, depth and width of each memory. All words of a memory become
-    one output, word 0 lowest. The output has the memory's name without generate blocks and without the instance of `ram`.
+    one output, word 0 lowest. It is named after the memory, with gen_... and u_words. removed and other dots replaced by _.
     """
     words = memories.split()
     lines = ["flatten -noscopeinfo", f"rename -top opened_{name}", f"cd opened_{name}"]
@@ -57,7 +58,7 @@ def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = No
     or if the assumptions make a `cover` unreachable.
 
     `method`: "SAT" (Yosys's solver) or "Bitwuzla". `sources`: the RTL, by default the modules of hw/arith that the proof uses.
-    `prepare`: makes a module of `sources` first. `beside`: stems of the files of `sources` that the proof reads besides that module.
+    `prepare`: makes the module under proof from `sources`; of `sources`, the proof then reads only packages and the modules `beside`.
     `steps`: 0 for combinational assertions. Otherwise the assertions are proven in the first `steps` clocks from reset, and in the clock
     after any `steps` clocks in which they held. `reach`: number of clocks within which every `cover` must be reached, by default `steps`.
     """

@@ -219,7 +219,7 @@ def in_place(folder: pathlib.Path) -> Iterator[None]:
 
 
 def widths(module: str, unit: catalogue.Design) -> list[int]:
-    """Returns the widths of port a_i of a module's instances in a unit."""
+    """Returns the different widths of port a_i among the instances of `module` in a unit, in ascending order."""
     out = store.OUT / "widths.json"
     yosys.run(f"{yosys.read(unit.sources(), unit.top, unit.parameters)}\nwrite_json {out}", out.with_suffix(".log"))
     return sorted({len(found["ports"]["a_i"]["bits"]) for name, found in json.loads(out.read_text())["modules"].items()
@@ -227,7 +227,7 @@ def widths(module: str, unit: catalogue.Design) -> list[int]:
 
 
 def in_words(word: str, claim: str, values: dict[str, str]) -> str:
-    """Describes a counterexample: inputs, the module's outputs and the correct outputs, in decimal and hexadecimal."""
+    """Describes a counterexample to `claim`: inputs, outputs and correct outputs, in decimal and hexadecimal. `word`: a key of PLACES."""
     def number(name: str, value: int) -> str:
         size = sizes.get(name, max(value.bit_length(), 1))
         return f"{name} = {value:,}" + (f" (0x{value:0{-(-size // 4)}X})" if size > 1 else "")

@@ -212,7 +212,7 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
     """Returns a design of hw/ by its module's name. Raises FileNotFoundError for an unknown module, ValueError where `check` does.
 
     `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: widths of carry-select groups, least significant first. Defaults are the
-    RTL's, with one exception: for the top `adder`, carry-select groups ripple by default, as in ADDERS and on all pages.
+    RTL's, with one exception: if `top` is "adder", carry-select groups add by ripple carry unless `look_ahead` is true.
     """
     found = [place for place in cores.names() if (HW / place / f"{top}.sv").exists() and not top.endswith("_pkg")]
     if not found:
@@ -263,7 +263,7 @@ class Row:
     flows: dict[str, tuple[str, ...]]  # by target; PLACED for an FPGA
 
     def flows_on(self, target: Library | Fpga) -> tuple[str, ...]:
-        """Returns the flows on a target. A user's library has the flows of osu035, without `cells` if it lacks the cells for this flow."""
+        """Returns the flows to measure on a target. A user's library has the flows of osu035. Flow `cells` requires a `structural` one."""
         is_users = isinstance(target, Library) and target.file
         flows = self.flows.get(target.name, self.flows.get("osu035", ()) if is_users else ())
         return tuple(flow for flow in flows if flow != "cells" or target.structural)
@@ -324,7 +324,7 @@ SLOW = {"faster", "area"}
 
 
 def first_rows() -> list[Row]:
-    """Returns the rows of a default run."""
+    """Returns the rows that `make synth` measures by default: the designs FIRST, without slow flows."""
     return [dataclasses.replace(row, flows={target: tuple(flow for flow in flows if flow not in SLOW and not (
         flow == "small" and row.section == "units")) for target, flows in row.flows.items()})
             for row in report_rows() if row.design.name in FIRST]
@@ -336,7 +336,7 @@ ARITHMETICS = {"structural": 0, "behavioural": 1}  # values of arith_pkg::arith_
 
 
 def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
-    """Returns the units that are placed and routed: design, format, arithmetic, device."""
+    """Returns the units that `make fpga` places and routes: design, format, arithmetic and device of each."""
     def unit(top: str, form: str, kind: str, fpga: Fpga, **more: object) -> tuple[Design, str, str, Fpga]:
         exponent, fraction = FORMATS[form]
         name = "-".join([top, form, kind, *(f"{key}{value}" for key, value in more.items())])

@@ -43,7 +43,7 @@ def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
 
 
 def replaced(given: argparse.Namespace) -> contextlib.AbstractContextManager:
-    """Returns the context in which a user's file, if option --adder names one, replaces the prefix adder. Raises ValueError."""
+    """Returns a context. If option --adder names a file, it replaces the prefix adder within this context. Raises ValueError."""
     return brought.in_place(brought.bring({"ADDER": given.adder})) if given.adder.endswith(".sv") else contextlib.nullcontext()
 
 

@@ -65,7 +65,7 @@ def joints(cut: Cut, stages: str, uncut: str) -> list[str]:
 
 
 def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
-    """Proves that a core gives the same results with its registers as without. Raises ToolFailed if not."""
+    """Proves that a core gives the same results with registers as without; raises ToolFailed if not. Returns what Proof.work returns."""
     exp, frac, *_ = FORMATS[name]
     folder = store.OUT / "proofs" / f"float.cuts.{cut.name}.{name}.{arithmetic}"
     uncut = FloatProof(cut.uncut, name, arithmetic)

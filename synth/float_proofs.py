@@ -104,7 +104,7 @@ class FloatProof:
         return f"{fixed} {ARITHMETIC[self.arithmetic]}"
 
     def numbers(self) -> dict[str, object]:
-        """Returns the values of the specifications' placeholders."""
+        """Returns the values of the placeholders ($E, $S, ...) in the texts of the specification and the claim."""
         exp, frac, wide_exp, wide_frac = (FORMATS | NARROW_FORMATS)[self.format]
         held_frac = HELD_FRACTION.get(self.format, frac)
         width = 1 + exp + frac
@@ -121,7 +121,7 @@ class FloatProof:
                     f"#b{fraction:0{wide_frac}b})")
 
         def power(exponent: int) -> str:
-            """Returns, for p = 2**exponent: the largest number below p of frac + 1 significant bits, the middle between it and p, and p."""
+            """Returns three numbers near p = 2**exponent: x, the largest below p with frac + 1 significant bits; (x + p) / 2; p."""
             one = 2 ** (frac + 2)
             return " ".join(wide(n, exponent - frac - 2) for n in (one - 2, one - 1, one))
 

@@ -21,8 +21,8 @@ MOST_PINS = 150  # every package used here has at least this many pins
 
 
 def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
-    """Returns the figures of `reported` for the seed with the median clock rate, with `rates`, the MHz of all seeds in rising order; and
-    whether all results were kept from earlier runs."""
+    """Places and routes a design with each seed. Returns the figures of `reported` for the seed with the median clock rate. Key `rates` has
+    the MHz of all seeds, in ascending order. Also returns whether all results were kept from earlier runs."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     wanted = store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts,
                        inspect.getsource(registered), inspect.getsource(_map))
@@ -63,7 +63,7 @@ def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
 
 
 def reported(report: dict, fpga: Fpga) -> dict:
-    """Returns figures of nextpnr's report: numbers of cells, MHz of the clock `fpga.clock` ("": of the fastest clock), slowest path."""
+    """Returns figures of nextpnr's report: numbers of cells; MHz of clock `fpga.clock` ("": of the fastest clock); slowest path."""
     used = {name: count["used"] for name, count in report["utilization"].items() if count["used"]}
     counts = (used.get(cell, 0) for cell in fpga.cells)
     rates = [found["achieved"] for name, found in report["fmax"].items() if fpga.clock in name]
@@ -72,7 +72,7 @@ def reported(report: dict, fpga: Fpga) -> dict:
 
 
 def slowest_path(paths: list[dict], clock: str = "") -> dict:
-    """Returns the slowest path between registers of `clock` ("": of any clock): both ends, ns in logic with registers, ns in wires."""
+    """Returns the slowest path between registers of `clock` ("": any clock): both end registers, ns in registers and logic, ns in wires."""
     path = next(path["path"] for path in paths if path["from"] == path["to"] and clock in path["from"])
     ns = {kind: sum(step["delay"] for step in path if (step["type"] == "routing") == (kind == "wires"))
           for kind in ("logic", "wires")}

@@ -18,8 +18,8 @@ class Targets:
 
 
 def available(names: list[str] | None, everything: bool = True, one: bool = False) -> tuple[str, ...]:
-    """Returns the targets: `names`, if not empty; else a user's library, if there is one; else, with `everything`, all libraries and the
-    FPGAs whose placers are installed; else, with `one`, all libraries; else the first library.
+    """Returns the targets by the first rule that applies: 1. `names`; 2. the user's library; 3. `everything`: all libraries, and the FPGAs
+    whose placers are installed; 4. `one` (a single module is measured): all libraries; 5. the first library.
 
     Raises MissingTool if a tool of a returned target is missing, and ValueError for an unknown name.
     """

@@ -16,7 +16,7 @@ ACCESSES = ("ro", "rw", "wo", "w1c", "idle")
 
 @dataclasses.dataclass(frozen=True)
 class Register:
-    """Consecutive words. `mask`: the writable bits of each word of a plain register."""
+    """A register of one or more consecutive words. `mask`: the writable bits of each word if it is plain (access `idle`), else 0."""
 
     name: str
     address: int
@@ -55,7 +55,7 @@ def _camel(*names: str) -> str:
 
 
 def package(listed: list[Register]) -> str:
-    """Returns csr_pkg.sv: words by number, bits by number, and the writable bits of plain registers."""
+    """Returns the text of csr_pkg.sv: the numbers of words and bits by name, and the writable bits of plain registers."""
     masks = [0] * PLAIN
     for register in listed:
         for word in range(register.address // 4, register.address // 4 + register.words):

@@ -14,7 +14,7 @@ def title(target: str) -> str:
 
 
 def groups() -> list[tuple[str, list[tuple[str, str]]]]:
-    """Returns the tables of a section, one per library and one for all FPGAs: units of measurement, and target and flow of each column."""
+    """Returns the tables of a section, one per library and one for all FPGAs: for each, its title, and (target, flow) of each column."""
     return [*((f"{library.title}: um2 / ns", [(library.name, flow) for flow in FLOWS]) for library in catalogue.LIBRARIES),
             ("LUTs / MHz", [(device.name, "placed") for device in FPGAS])]
 

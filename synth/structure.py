@@ -1,6 +1,6 @@
 """Makes netlists of full adders, multiplexers and gates (flows/structure.v), times them by the paper's delay model, and evaluates them.
 
-The paper states delays of 48, 14 and 10 full adders, but not the delay of a multiplexer. Every delay here is therefore for a Counting.
+The paper states delays of 48, 14 and 10 full adders, but no delay of a multiplexer. A Counting is an assumption about this delay.
 """
 
 import dataclasses
@@ -14,7 +14,7 @@ from synth.catalogue import Design
 
 @dataclasses.dataclass(frozen=True)
 class Counting:
-    """A way to count the delay of a path, in full-adder delays. Gates have no delay."""
+    """Assumed delays of multiplexers, in full-adder delays. Gates have no delay."""
 
     title: str
     multiplexer: float  # one multiplexer

@@ -23,7 +23,7 @@ def around(cells: list[str], contracts: list[str]) -> list[pathlib.Path]:
 
 
 def prove(name: str, row: dict) -> tuple[dict, bool]:
-    """Proves one case of an entry of units.toml; see assertions.holds."""
+    """Proves one case of an entry of units.toml. `row`: the entry's values, overridden by those of the case. See assertions.holds."""
     parameters = {key: value for key, value in row.items() if key[0].isupper()}
     cells = row["cell"].split()
     prepare = None

@@ -16,7 +16,7 @@ from synth import tools
 
 
 def folder() -> pathlib.Path:
-    """Returns the folder of the installed package, in this Python or in the environment made by .ci/setup. The folder has yosys-abc and,
+    """Returns the folder of package pyosys, in this Python or in the environment made by .ci/setup. The folder has yosys-abc and,
     in share/, cell models and techmap files. Raises MissingTool."""
     spec = importlib.util.find_spec("pyosys")
     found = [pathlib.Path(spec.origin).parent] if spec else [*tools.VENV.glob("lib/*/site-packages/pyosys")]
@@ -26,7 +26,7 @@ def folder() -> pathlib.Path:
 
 
 def _python() -> str:
-    """Returns the Python that has the package. Raises MissingTool."""
+    """Returns the path of the Python interpreter that has package pyosys. Raises MissingTool if none has it."""
     return str(tools.VENV / "bin" / "python3") if tools.VENV in folder().parents else sys.executable
 
 

@@ -34,8 +34,8 @@ def place_in_picture(setting, aspect, point):
 
 
 def blender_place(world, lens, sensor, fit, size, point):
-    """Projects a point like Blender's projection matrix (BKE_camera_params_compute_viewplane): the sensor's side has the length of the
-    picture's side to which it is fitted."""
+    """Projects a point like Blender's projection matrix (BKE_camera_params_compute_viewplane); returns x and y as place_in_picture does.
+    The sensor spans one side of the picture, given by `fit`: the longer one (AUTO), the width (HORIZONTAL) or the height (VERTICAL)."""
     axes = [[row[column] for row in world[:3]] for column in range(4)]
     way = [p - e for p, e in zip(point, axes[3])]
     x, y, z = (dot(way, axis) for axis in axes[:3])

@@ -58,7 +58,7 @@ bind ray_generator stream_checks #(
   .ready(ready_i),
   .data ({direction_o, pixel_o})
 );
-// Last is 0, because the test of this module also responds with misplaced RLAST. The test of the whole core does not.
+// Last is 0: RLAST is not checked, because the memory in this module's own test also sets RLAST in wrong beats.
 bind axi_read_manager axi_read_checks #(
   .IdWidth($bits(axi_arid_o)),
   .DataWidth($bits(axi_rdata_i)),

@@ -1,6 +1,6 @@
 // The framing of bursts at a hit-test pipeline. The user sends complete bursts: first_i only in a burst's first test,
-// last_i only in its last test, one direction per burst. The unit closes no more bursts than it took, and returns no
-// more points than it closed bursts with a nearest hit.
+// last_i only in its last test, one direction per burst. The unit closes no more bursts than it took. It returns at
+// most one point for each closed burst that has a nearest hit.
 module burst_checks #(
   parameter int unsigned DirectionWidth = 96
 ) (

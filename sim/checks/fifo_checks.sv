@@ -1,4 +1,4 @@
-// A FIFO's user pushes only if there is a free place, and pops only if valid_o is set. valid_o and space_o are right.
+// A FIFO's user pushes only into a free place, and pops only with valid_o. valid_o and space_o fit the number of words.
 module fifo_checks #(
   parameter int unsigned Depth   = 2,
   parameter int unsigned Reserve = 0,

@@ -28,13 +28,13 @@ TRIANGLES = {10: (3.0, 0.0, 4.0), 11: (2.0, 0.0, 4.0), 12: (5.0, 4.0, 7.0)}  # x
 
 
 def node(base, kinds, *boxes):
-    """Returns a node line with a grid of step 1/32 from the origin."""
+    """Returns a node's 64 bytes: its grid starts at the origin, with step 1/32. `boxes`: six bytes of grid coordinates per child."""
     bits = 0x7A7A7A << 96 | base << 120 | kinds << 148
     return (bits | sum(box << (176 + 48 * n) for n, box in enumerate(boxes))).to_bytes(64, "little")
 
 
 def triangle(name):
-    """Returns a triangle line."""
+    """Returns the 64 bytes of triangle `name`, a key of TRIANGLES."""
     x, low, high = TRIANGLES[name]
     return struct.pack("<9fI", x, low, low, x, high, low, x, low, high, name).ljust(64, b"\0")
 
@@ -97,13 +97,13 @@ class Memory(axi.MemoryRegion):
 
 
 def pauses(seed):
-    """Returns an endless iterator over clocks: whether to pause in the clock."""
+    """Returns an endless iterator of Booleans, one per clock: whether to pause in this clock."""
     chance = random.Random(seed)
     return (chance.random() < 0.4 for _ in itertools.count())
 
 
 class Bench:
-    """The core with memory, driver of registers and stream sink."""
+    """The core, connected to a memory, a driver of its registers and a sink of its stream."""
 
     def __init__(self, dut, seed):
         self.dut = dut

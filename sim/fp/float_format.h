@@ -38,7 +38,7 @@ inline constexpr FloatFormat kFloat8{4, 3};  // IEEE semantics: infinities, seve
 
 enum class FloatOp { kAdd, kSub, kMul, kDiv, kEq, kLt, kLe };
 
-/// Equal to fp_pkg::rounding_mode_e.
+/// Rounding modes, encoded as in fp_pkg::rounding_mode_e.
 enum class RoundingMode : std::uint8_t {
   kNearestEven = 0,
   kTowardZero = 1,
@@ -54,7 +54,7 @@ constexpr RoundingMode rounding_of(int encoding) {
 
 enum class Tininess : std::uint8_t { kBeforeRounding = 0, kAfterRounding = 1 };
 
-/// Exception flags, OR-ed; the order of RISC-V and TestFloat, equal to fp_pkg::flags_t.
+/// Bits of a set of exception flags, as in RISC-V, TestFloat and fp_pkg::flags_t.
 inline constexpr std::uint8_t kInexact = 1;
 inline constexpr std::uint8_t kUnderflow = 2;
 inline constexpr std::uint8_t kOverflow = 4;

@@ -124,11 +124,11 @@ OperandPair PairSource::near_range_end() {
 namespace {
 
 /// Returns significands {a, b} whose quotient is very close to a rounding boundary m / 2^z, or
-/// {0, 0} if there is none. a and b are in [2^F, 2^(F+1)), F = frac_bits; b is odd. m has F+1 bits
-/// (a representable number) or, if `midpoint`, F+2 bits. z is `k` if `midpoint`, else k - 1. `k` is
-/// F+1, or F+2 for quotients below 1. For small odd r, a * 2^z = m * b + r makes the distance from
-/// a / b to the boundary r / (b * 2^z). It follows that m = -r / b modulo 2^z, which gives m and
-/// then a (Matula and McFearin, 2001).
+/// {0, 0} if there is none for this odd b and r. a and b are in [2^F, 2^(F+1)), F = frac_bits. k is
+/// F+1, or F+2 for quotients below 1. For a boundary at a representable number, m has F+1 bits and
+/// z = k - 1. For a boundary midway between two (`midpoint`), m has F+2 bits and z = k. If
+/// a * 2^z = m * b + r, the distance from a / b to the boundary is r / (b * 2^z). Therefore
+/// m = -r / b modulo 2^z, which gives m and then a (Matula and McFearin, 2001).
 OperandPair hard_division(FloatFormat format, std::uint32_t b, int r, int k, bool midpoint) {
   const int f = format.frac_bits;
   std::uint64_t inverse = b;  // 1 / b modulo 2^64: each step doubles the number of correct bits

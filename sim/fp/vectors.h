@@ -14,9 +14,9 @@ struct OperandPair {
   std::uint32_t b = 0;
 };
 
-/// Returns all pairs of edge cases: zeros, infinities, quiet and signalling NaNs, and numbers with
-/// exponents near the smallest, near the largest, near that of 1.0, and near the distances from it
-/// at which alignment changes. Fractions are near all zeros, one half and all ones. Both signs.
+/// Returns all pairs of edge cases of both signs: zeros, infinities, quiet and signalling NaNs, and
+/// numbers. Exponent fields are within 2 of 0, f, 2 f, bias - f, bias, bias + f, max - f or max,
+/// with f = frac_bits. Fractions are near all zeros, near one half and near all ones.
 std::vector<OperandPair> crossed_edges(FloatFormat format);
 
 /// An endless random stream of pairs, with hard cases for `op`, from one seed.

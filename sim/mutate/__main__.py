@@ -72,7 +72,7 @@ def equivalent(netlist: pathlib.Path, fault: str) -> bool:
 
 
 def place(fault: str) -> str:
-    """Returns the fault's line in hw/, mode, port and bit."""
+    """Describes a fault, given as a line of the .list file: FILE:LINE in hw/, mode, port and bit."""
     words = dict(re.findall(r"-(mode|port|portbit) (\S+)", fault))
     return f"{source(fault) or '?'} {words['mode']} {words['port']}[{words['portbit']}]"
 
@@ -94,7 +94,7 @@ def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
 
 
 def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, at_most: float) -> Outcome:
-    """Runs a core's test with each of its faults. Then checks survivors for equivalence, until at most `at_most` percent survive."""
+    """Runs a core's test with each of its faults. Then drops survivors that change no output, until at most `at_most` percent are left."""
     netlist = netlists / core
     faults = (netlists / f"{core}.list").read_text().splitlines()
     survived = test_survivors(programs / f"{core}_mutants", len(faults))

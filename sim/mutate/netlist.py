@@ -22,8 +22,8 @@ MEMORIES = {"memrd": ("ADDR", "DATA"), "memwr": ("ADDR", "DATA", "EN"), "meminit
 
 
 def source(fault: str) -> str:
-    """Returns FILE:LINE in hw/ for a line of OUT.list: the place of the faulty expression (a source range), or else the declaration of
-    the wire or the instance; "" if the line has neither."""
+    """Returns FILE:LINE in hw/ for a line of OUT.list. If the line has a source range, this is the place of the faulty expression.
+    Otherwise, it is the declaration of the wire or the instance. Returns "" if the line has neither."""
     found = re.search(r"-src \S*?(hw/\S+?:\d+)\.\d+-", fault) or re.search(r"-src \S*?(hw/\S+?:\d+)", fault)
     return found[1] if found else ""
 

@@ -22,7 +22,7 @@ MODES = {"inv": "inverted", "const0": "held at 0", "const1": "held at 1"}
 
 
 def described(line: str) -> str:
-    """Describes a fault in words, from its line in the netlist's list."""
+    """Describes a fault in words. `line`: its line in the .list file of sim.mutate.netlist."""
     mode = MODES[re.search(r"-mode (\w+)", line)[1]]
     wire = re.search(r"-wire (\S+) -wirebit (\d+)", line)
     where = netlist.source(line)
@@ -37,7 +37,7 @@ def example() -> list[float]:
 
 
 def verilate(folder: pathlib.Path) -> list[str]:
-    """Writes the Verilated unit as C++ into `folder`. Returns the lines of the list of the adder's faults."""
+    """Writes the Verilated unit as C++ into `folder`. Returns the lines of fp_adder.list, one per fault of the adder."""
     netlist.write(folder / "fp_adder", "fp_adder", [], FAULTS, 1, [])
     gates = (folder / "fp_adder.v").read_text().replace("module fp_adder(", "module fp_adder_gates(", 1)
     (folder / "fp_adder_gates.v").write_text(gates)

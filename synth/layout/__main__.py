@@ -71,7 +71,7 @@ def wanted(given: argparse.Namespace) -> list[list[flow.Job]]:
 
 
 def measure(rows: list[list[flow.Job]], workers: int) -> tuple[list[dict], list[str]]:
-    """Makes all layouts. Returns a record of the median seed per row, and the failures. Rows without any layout are left out."""
+    """Makes all layouts. Returns a record per row, of the seed with the median delay, and the failures. Omits rows without any layout."""
     failures: list[str] = []
     results = runner.run([runner.Job(f"{job.design.name} {job.flow} seed {job.seed}", functools.partial(flow.make, job), told)
                           for row in rows for job in row], workers, failures)
@@ -86,7 +86,7 @@ def measure(rows: list[list[flow.Job]], workers: int) -> tuple[list[dict], list[
 
 
 def told(result: dict) -> str:
-    """Describes a result in a few words."""
+    """Returns a layout's delays in words, of the cells alone and with wires, and its number of failed nets."""
     if "wires_ns" in result:
         return f"{result['cells_ns']:.2f} ns, {result['wires_ns']:.2f} ns with wires"
     failed = "" if result["failed"] is None else f", {result['failed']} nets failed"

@@ -45,7 +45,7 @@ def key(job: Job) -> str:
 
 
 def make(job: Job) -> tuple[dict, bool]:
-    """Returns the result, and whether it was kept. The result has the delays (ns) of the cells alone, with estimated wires and with routed
+    """Returns the result, and whether an earlier run kept it. It has the delays (ns) of cells alone, with estimated wires and with routed
     wires; areas (um2); wires (um, pF); number of failed nets, None if not routed. If nets failed, there is no delay with routed wires."""
     return store.cached(job.folder, key(job), tools.measured(lambda: _make(job)))
 

@@ -56,8 +56,8 @@ def capacitances(text: str, nets: set[str]) -> dict[str, float]:
 
 
 def contacts(tech: pathlib.Path, layers: list[str]) -> dict[str, float]:
-    """Returns the resistance (ohms) of the contact on top of each layer but the last, from magic's technology file. A contact that the file
-    does not list has the resistance of the contact below."""
+    """Returns, for each layer but the last, the resistance (ohms) of a contact to the next higher layer, from magic's technology file. If
+    the file does not list a contact, it has the resistance of the contact one layer lower."""
     text = tech.read_text()
     found: dict[str, float] = {}
     for place, layer in enumerate(layers[:-1], 2):
@@ -84,7 +84,7 @@ class Tree:
 
 def tree(wires: list[Wire], taps: dict[str, list[Rect]], technology: Technology,
          ohms: dict[str, float]) -> Tree:
-    """Returns the tree of a net. A wire is split wherever another wire ends on it. `taps`: the metal of each pin. `ohms`: of contacts.
+    """Returns the tree of a net. A wire is split where another wire ends on it. `taps`: each pin's metal. `ohms`: returned by `contacts`.
 
     Raises ToolFailed if the net is in several pieces.
     """
@@ -161,7 +161,7 @@ def taps(placement: Placement, ends: list[tuple[str, str]]) -> dict[str, list[Re
 
 def spef(placement: Placement, wires: Wires, farads: dict[str, float], ohms: dict[str, float],
          outputs: dict[str, set[str]]) -> str:
-    """Returns the text of a SPEF file. `farads`: pF of each net. `ohms`: of contacts. `outputs`: output pins by type of cell."""
+    """Returns the text of a SPEF file. `farads`: pF of each net. `ohms`: returned by `contacts`. `outputs`: output pins by type of cell."""
     netlist = placement.netlist
     head = {"DATE": "", "VENDOR": "", "PROGRAM": "magic, qrouter", "VERSION": "", "DESIGN_FLOW": ""}
     lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.top}"',

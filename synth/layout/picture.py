@@ -21,8 +21,8 @@ REST = "the rest"
 def parts_of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, str]:
     """Returns the part of each cell, in the order of the legend.
 
-    The part of an adder's cell is the band of bits with the highest operand bit on which the cell depends; this works for any mapping.
-    In other designs the part is the top's instance in the cell's name, or REST.
+    In an adder, parts are bands of BAND bits; a cell is in the band of the highest operand bit on which it depends, in any mapping.
+    In other designs, parts are the instances in the top module; cells outside these instances are in part REST.
     """
     if design.top == "adder":
         bits = highest_bits(netlist, outputs)

@@ -128,7 +128,7 @@ def place(netlist: Netlist, technology: Technology, seed: int, density: float, a
 
 def _run(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
          core: tuple[int, int], seed: int, stem: pathlib.Path) -> tuple[dict, dict[str, str]]:
-    """Returns the lower left corner and the orientation of each cell. Without `ports`, places are global: not aligned to rows."""
+    """Returns the lower left corner and the orientation of each cell. Without `ports`, cells are placed globally: not aligned to rows."""
     for suffix, text in bookshelf(netlist, technology, widths, ports, core).items():
         stem.with_suffix(suffix).write_text(text.format(stem=stem.name))
     solution = stem.with_suffix(".sol")
@@ -145,7 +145,7 @@ def _run(netlist: Netlist, technology: Technology, widths: dict[str, int], ports
 
 def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
               core: tuple[int, int]) -> dict[str, str]:
-    """Returns the bookshelf files by suffix. `widths`: of the cells, in tracks. `core`: number of tracks per row, number of rows."""
+    """Returns the bookshelf files by suffix. `widths`: widths of cells, in tracks. `core`: number of tracks per row, number of rows."""
     sites, rows = core
     pitch = technology.tracks[0].pitch
     nodes = [f"{name} {widths[name]} {STEPS}" for name in netlist.cells] + [f"{name} terminal" for name in ports]
@@ -173,7 +173,7 @@ def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], 
 
 
 def around(netlist: Netlist, cells: dict[str, tuple[int, int]], core: tuple[int, int]) -> dict[str, tuple[int, int]]:
-    """Returns places for the ports, at equal distances around the core, in order of the angles of their nets' cells around its middle."""
+    """Returns places for the ports, equally spaced around the core, in the order of the directions from its middle to their nets' cells."""
     width, height = core
     angles = {}
     for ends in netlist.nets().values():

@@ -1,9 +1,9 @@
 // Composition of the multiplier's proof, step 3. Claim: the words that enter the carry-save tree add up to
 //   the sum over k of (row[k] + n[k] - n[k] * 2**25) * 4**k, modulo 2**48,
-// with row[k] partial product k, and n[k] 1 if digit k is negative. SAT solvers cannot prove this sum at once. The
-// proof has two parts: word k = word k for rows of 0, plus row[k] * 4**k; the words for rows of 0 add up to the terms
-// in n. With 14 words, the first word is the row of constants. Module "assembly" is made of the multiplier by
-// booth_assembly in synth/prove.py.
+// with row[k] partial product k, and n[k] 1 if digit k is negative. SAT solvers cannot prove this sum at once; it is
+// proven in two parts. First: word k is its value for rows of 0, plus row[k] * 4**k. Second: the words for rows of 0
+// add up to the terms in n. With Words = 14, a word of constants precedes word 0. booth_assembly in synth/prove.py
+// makes module "assembly" from the multiplier.
 module booth_assembly_sums #(
   parameter int unsigned Words = 13
 ) (

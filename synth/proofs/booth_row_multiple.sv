@@ -1,5 +1,5 @@
 // Composition of the multiplier's proof, step 2. Claim: a row (partial product) is its digit times operand a:
-// row + negative - negative * 2**(Width+1) = digit * a. Modulo 2**(Width+3), in which all these values are distinct.
+// row + n - n * 2**(Width+1) = digit * a, n being `negative`; modulo 2**(Width+3), these values are distinct.
 module booth_row_multiple #(
   parameter int unsigned Width = 24
 ) (

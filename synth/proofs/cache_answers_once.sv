@@ -2,8 +2,7 @@
 // demand request once. The answer has the request's ray, and the line of the requested number or an error. Until the
 // answer, the request is in the queue of hits, or is a target of an entry with a pending line; that line stays in the
 // entry until the answer. A line that is cached or pending is not requested from memory. opened_line_cache is
-// line_cache of two sets and two targets, with registers and memories as outputs. Only one line of memory is modelled:
-// `number`, arbitrary.
+// line_cache of two sets and two targets, with registers and memories as outputs. One line, any `number`, is modelled.
 module cache_answers_once #(
   localparam int unsigned Lines = 16,
   localparam int unsigned Ways  = 8,
@@ -268,7 +267,7 @@ module cache_answers_once #(
         if (pending[p]) begin
           assert (is_number[p] == (tags[TagWidth*p+:TagWidth] == number[AddressWidth-1:1]
                                    && 1'(p % 2) == number[0]));
-          // The list of a pending entry has the latest target, then the target before
+          // A pending entry's list has the targets that wait for the entry's line, the latest first
           assert (heads[2*p+1] == ((!free[0] && !coming[0] && entry_0 == 4'(p))
                                    || (!free[1] && !coming[1] && entry_1 == 4'(p))));
           if (!heads[2*p+1]) assert (!mores[p]);

@@ -1,8 +1,8 @@
 // Claims, from reset on, whatever a ray core does for its rays and however long it takes: A context belongs to one ray
-// at a time. Only rays in the core end. Every ray is in one place, and one end result leaves the core per ray. No queue
-// overflows. One arbitrary ray is marked; its end result leaves once and has the mark. The result's P is that of the
-// time when the ray ended, because P and the mark are in the same word of the queue. opened_ray_contexts is
-// contracts/ray_contexts.sv with its registers as outputs.
+// at a time. No ray ends that is not in the core. Each ray is in one place: queue of rays, context, way into the queue
+// of ends, this queue, or result port. Per ray, one end result leaves the core. No queue overflows. One arbitrary ray
+// is marked; its end result leaves once and has the mark. Its P is then that of the ray's end, because a queue keeps P
+// and mark in one word. opened_ray_contexts is contracts/ray_contexts.sv with its registers as outputs.
 module contexts_answer_once #(
   parameter int unsigned Rays = 4,
   localparam int unsigned CtxWidth = $clog2(Rays)
@@ -119,7 +119,7 @@ module contexts_answer_once #(
 
       if (ended && answer_mark) assert (chosen && !left);
 
-      // Invariant of the marked ray: the ray is in exactly one place
+      // Invariant: the marked ray is in exactly one of the places listed above, or has left
       assert (TotalWidth'(chosen) == ones(32'(ray_marks)) + ones(32'(marks)) + TotalWidth'(entering)
                                      + ones(32'(end_marks)) + TotalWidth'(offered) + TotalWidth'(left));
       assert (ray_marks >> rays_count == '0 && end_marks >> ends_count == '0);

@@ -1,7 +1,7 @@
 // Claims, from reset on, for any manager: The register port obeys AXI4-Lite (sim/checks/axi_lite_checks). A plain
-// register changes only in writable bits of enabled bytes, by a write to this register with response OKAY. A write gets
-// SLVERR while rays are generated or traced; for `base`, also while lines are read. A read returns the register's
-// value. The watched register is arbitrary. opened_csr is csr with some registers as outputs.
+// register (access `idle`) changes only in writable bits of enabled bytes, by a write to it with response OKAY. Writes
+// to it get SLVERR while rays are generated or traced, and to `base` also while lines are read. A read returns its
+// value. The watched plain register is arbitrary. opened_csr is csr with some registers as outputs.
 module csr_keeps_protocol (
   input logic clk
 );

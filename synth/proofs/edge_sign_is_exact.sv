@@ -1,7 +1,7 @@
 // Claim, for every ray and record in a small format: if |U| exceeds the bound, U has the sign of the exact edge product
 // J . E. J is the ray's direction. E is the exact edge vector. Its components round to the record's words F; therefore
 // |E_i - F_i| is at most half a unit in the last place of F_i. U is J . F as computed by the float cores.
-// Assumed, from scaling at set-up: |J_i| < 2, |F_i| < 2, and at least one |F_i| >= 1. The bound is any number not below
+// Assumed, from scaling at set-up: |J_i| < 2, |F_i| < 2, and at least one |F_i| >= 1. The bound on |U| is any number >=
 // C 2^-(FracWidth+1) (|F_0| + |F_1| + |F_2|), with C = C1024 / 1024. All sums here are integers, in units of the
 // format's smallest number or of its square.
 module edge_sign_is_exact #(

@@ -1,8 +1,8 @@
-// Claims for any constant inputs of exact_exponents: Nonzero coordinates are integer multiples of the coordinates'
-// unit, nonzero components of the direction of the direction's unit. These numbers, and differences of two of them, fit
-// in the given digits. A unit is the lowest exponent of its numbers; one digit less is not enough. `one` and `limit`
-// fit, too. Their shifts make D one < S limit equivalent to t = D / S < limit, in the units of coordinates and
-// direction.
+// Claims for any constant inputs of exact_exponents: The unit of the coordinates has the lowest exponent of all nonzero
+// coordinates; therefore they are integer multiples of it. The same holds for the direction's unit and components. In
+// these units, the numbers and differences of two of them fit in the given digits, but not in one digit less. `one` and
+// `limit` fit, too. Their shifts make D * one < S * limit equivalent to t < limit, with t = D / S of a hit, and D and S
+// in the units that the header of exact_exponents states.
 module exact_exponents_fit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,

@@ -67,7 +67,7 @@ module nearest_hit_keeps_nearest #(
   localparam logic [3:0] MaxError = 4'(hit_test_pkg::max_grazing(FracWidth));
   always_comb assume (!hit || (!doubt && t_error <= MaxError));
 
-  // any: the burst has had a hit; watched: this burst has the watched hit; was_*: the last test, the hit kept before
+  // any: the burst had a sure hit; watched: it had the watched hit; was_*: the last test, and the hit kept before it
   logic any, watched, taken, was_sure, was_have, was_doubt, was_hit, was_last;
   logic [3:0] was_tag, was_best_tag;
   logic [Width-1:0] watched_t, was_t, was_best;

@@ -1,9 +1,8 @@
 // Claims, for any functions that the pipelined unit's float cores compute: V and U_k are sums (x + y) + z of the
 // products of the record's words and the direction's components. The verdict is that of hit_decision for V and U_k.
-// Also, t = d / V, and for a nearest hit P_k = (d I_k) / V. The proof computes these words combinationally, and
-// compares them, after the unit's latency, with the words that enter nearest_hit, and with P. opened_hit_test_pipeline
-// is the unit with these words as outputs. pipeline_keeps_tags proves that tests enter nearest_hit once, in order, with
-// their tags.
+// Also, t = d / V, and for a nearest hit P_k = (d I_k) / V. The proof computes these words combinationally. After the
+// unit's latency, it compares them with P and with the words that enter nearest_hit. opened_hit_test_pipeline is the
+// unit with these words as outputs. Proof pipeline_keeps_tags: tests enter nearest_hit once, in order, with their tags.
 module pipeline_computes #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -23,7 +22,7 @@ module pipeline_computes #(
 );
 
   localparam int unsigned DivideLatency = hit_test_pkg::divide_latency(FracWidth);
-  // Dot products, decision, division
+  // Clocks of the decision (1), the dot products and the division
   localparam int unsigned Latency = 1 + hit_test_pkg::DotLatency + DivideLatency;
 
   logic found, divided, hit, doubt, point_asked;

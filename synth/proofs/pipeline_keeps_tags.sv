@@ -16,7 +16,7 @@ module pipeline_keeps_tags #(
   input logic                take
 );
 
-  // Dot products, decision, division
+  // Clocks of the decision (1), the dot products and the division
   localparam int unsigned Latency = 1 + hit_test_pkg::DotLatency
                                     + hit_test_pkg::divide_latency(FracWidth);
 

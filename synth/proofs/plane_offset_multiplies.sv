@@ -1,5 +1,5 @@
-// Claim: plane_offset with rows and an adder equals its behavioural form, from +- q step / 256 with a truncated
-// product. Proven for steps of few bits; the tree for 33 bits differs only in width.
+// Claim: plane_offset computes the same plane with a carry-save tree and an adder as with `*`: from + floor(q step /
+// 256), or from - floor(q step / 256). Proven for steps of few bits; for steps of 33 bits, only widths differ.
 module plane_offset_multiplies #(
   parameter int unsigned Width = 8,
   parameter int unsigned PlaneWidth = 11

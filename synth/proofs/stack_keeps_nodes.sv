@@ -1,6 +1,6 @@
-// Claims, from reset on, for any results of box_unit: A pushed node is requested once, by the line number in its group.
-// Exception: when the ray's stack is examined, nodes beyond the ray's t_max are dropped, and all nodes of a ray that
-// has ended or has met a node twice. A ray is `traversing` until its nodes are requested or dropped. A group is pushed
+// Claims, from reset on, for any results of box_unit: A pushed node is requested once, by the line number in its group,
+// or is dropped when the ray's stack is examined: because the node is beyond the ray's t_max, or because the ray has
+// ended or has met a node twice. A ray is `traversing` until its nodes are requested or dropped. A group is pushed
 // only if there is room, on the ray's own stack or on the shared stack. One ray at a time owns the shared stack, for as
 // long as this ray needs room there. Another ray that needs the shared stack waits until the owner, a traversing ray,
 // releases the stack. opened_traversal is traversal of two rays, with room for two groups each and for two groups in

@@ -1,7 +1,7 @@
 // Claim: the paper's unit follows its timetable (figure 9), whenever tests come and whenever the unit is reset. k
 // clocks after a test is taken, word k of the test is on the bus (k = 1 to 6), or division k - 6 is done (k = 7 to 9).
-// A component is at the output exactly 8, 9 and 10 clocks after. The unit is ready exactly when no test was taken in
-// the last 6 clocks. The registers' enables are set in their clocks of the timetable.
+// A component of P is at the output exactly 8, 9 and 10 clocks after a test is taken. The unit is ready exactly when no
+// test was taken in the last 6 clocks. Each register's enable is set in the clocks that the timetable states.
 module timetable (
   input logic        clk,
   input logic        reset_n,

@@ -75,7 +75,7 @@ class Brought(unittest.TestCase):
             self.assertRegex(told.getvalue(), f"^{said}$")
 
     def test_files_as_other_tools_write_them(self) -> None:
-        """Accepts all byte order marks, encodings, line ends, time scales, default net types and names; proves the last module."""
+        """Accepts all byte order marks, encodings, line ends, time scales, default net types and names. Proves the last of these files."""
         module = f"`timescale 1ns / 1ps\n`default_nettype none\n{HEAD.replace('logic', 'wire')}{ADDS}"
         multiplier = ("// prefix_adder, booth_multiplier\r\n`timescale 1ps/1ps\r\nmodule half_adder(input a, b, output s); timeunit 1ns; assign s = a ^ b; "
                       "endmodule : half_adder\r\nmodule times #(parameter Width = 24) (input [Width-1:0] a_i, b_i, output [2*Width-1:0] "
@@ -118,7 +118,7 @@ class Brought(unittest.TestCase):
         self.assertRegex(row["counterexample"], r"^product = a \* b at 5 bits: refuted by a = \d+ .*it says product = 0 \(0x000\); right is")
 
     def test_names_of_hardware_are_free_to_use(self) -> None:
-        """Proves a copy of the replaced module, and, by every product, a multiplier of another name."""
+        """Proves an adder that has the name of the module that it replaces, and a multiplier that has another name."""
         rows = self.judged(ADDER=self.file((catalogue.HW / "arith/prefix_adder.sv").read_text()), MULTIPLIER=self.file(
             "module times #(parameter Width = 24) (input [Width-1:0] a_i, b_i, output [2*Width-1:0] product_o);\n"
             "  assign product_o = a_i * b_i;\nendmodule\n", "times.v"))

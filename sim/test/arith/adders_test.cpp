@@ -16,7 +16,7 @@ constexpr std::uint32_t kAllKinds = 0x1ff;
 
 class AddersTest : public testing::Test {
  protected:
-  /// Adds, and expects a + b + carry + error of all adders.
+  /// Adds a + b + carry in all adders. The sum that they are compared with is larger by `error`.
   void add(std::uint64_t a, std::uint64_t b, bool carry, unsigned __int128 error = 0) {
     const unsigned __int128 sum = static_cast<unsigned __int128>(a) + b + carry + error;
     model_->a_i = a;

@@ -105,8 +105,8 @@ TEST(BoardCore, ScenesFollowEachOther) {
   }
 }
 
-/// A board whose words are received only after its last word, all at once, as by a busy host from a
-/// serial port. The host must then not wait for another word.
+/// Link that behaves like a serial port to a busy host: the board's words arrive all at once, after
+/// the board has sent the last of them. The host must then not wait for another word.
 class BurstLink : public WordLink {
  public:
   bool send(std::uint32_t word) override {

@@ -15,7 +15,7 @@ namespace {
 
 using lab::ExactCase;
 
-/// Returns the number of cases per suite and model: 300, or RAYGATE_STRESS / number of suites + 1.
+/// Returns the number of cases per suite and model: 300, or RAYGATE_STRESS shared among all suites.
 std::size_t cases_of_a_suite() {
   const char* wanted = std::getenv("RAYGATE_STRESS");
   return wanted == nullptr ? 300 : std::strtoul(wanted, nullptr, 10) / lab::all_suites().size() + 1;

@@ -191,8 +191,8 @@ class Machine {
     }
     return vector;
   }
-  /// Loads `limit` and `one` in a common unit, for comparing t = D / S with the limit: D * one is
-  /// compared with S * limit. t has the unit 2^(unit_ - direction_unit_).
+  /// Loads the request's limit as a fraction limit / one, in t's unit 2^(unit_ - direction_unit_).
+  /// t = D / S is then compared with the limit by comparing D * one with S * limit.
   void load_limit(Number& limit, Number& one) {
     const Fields fields(request_.limit);
     const int gap = unit_ - (fields.exponent + direction_unit_ - 150);

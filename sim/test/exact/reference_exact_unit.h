@@ -5,8 +5,8 @@
 
 namespace raygate {
 
-/// A request to the exact unit: does a ray hit `triangle`, how does the hit's t compare, or both.
-/// Values have the ranges stated in exact.h.
+/// A request to the exact unit: does a ray hit `triangle`, how does the hit's t compare with a
+/// limit or with the t of another hit, or both. Values have the ranges stated in exact.h.
 struct ExactRequest {
   enum class Against { kNothing, kLimit, kOther };  ///< as in exact_pkg::against_e
 

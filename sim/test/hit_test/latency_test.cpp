@@ -14,8 +14,8 @@ constexpr int kDotLatency = 9, kDivideLatency = 17;
 constexpr int kClosedLatency = kDotLatency + kDivideLatency + 3;
 constexpr int kPointLatency = kClosedLatency + kDivideLatency;
 
-/// Clocks from a burst of one test, including the clock that takes the test, to the burst's end and
-/// to its point. 0 if there is no end or no point.
+/// For a burst of one test: clocks from the one that takes the test, counted as 1, to the one that
+/// reports the burst's end (`closed`) and to the one that reports its point. 0: not reported.
 struct Latencies {
   int closed = 0, point = 0;
 };

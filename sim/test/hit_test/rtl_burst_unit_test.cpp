@@ -15,8 +15,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the number of tests for each array: RAYGATE_STRESS if set, else a million with one lane
-/// and 100,000 with several.
+/// Returns the number of tests per array: RAYGATE_STRESS if it is set; otherwise a million for an
+/// array of one lane, and 100,000 for an array of several lanes.
 std::uint64_t tests_wanted(int lanes) {
   const char* wanted = std::getenv("RAYGATE_STRESS");
   return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : lanes == 1 ? 1'000'000 : 100'000;
@@ -33,8 +33,8 @@ void expect_same_events(const HitCounters& rtl, const HitCounters& cpu) {
 
 class RtlBurstUnitTest : public testing::TestWithParam<std::tuple<Arith, int>> {};
 
-/// Compares every field of every result, under random stalls, in many small and large batches. A
-/// batch starts before or after the end of the previous batch.
+/// Compares every field of every result, under random stalls, in many small and large batches. At
+/// random, a batch starts before or after the previous batch is finished.
 TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
   const auto [arith, lanes] = GetParam();
   const auto seed = static_cast<std::uint64_t>(lanes);

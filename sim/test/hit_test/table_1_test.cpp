@@ -1,5 +1,5 @@
-// Counts Table 1 of the paper: the general form has 9 multiplications, 8 additions and 1 division,
-// the proposed form 6, 3 and 1 (44.4 % fewer). The proposed form's three quotients share a divisor.
+// Counts Table 1 of the paper, per test: 9 multiplications, 8 additions, 1 division in the general
+// form; 6, 3, 1 in the proposed form (44.4 % fewer), whose 3 quotients by one divisor count as 1.
 #include <gtest/gtest.h>
 
 #include "sim/table_1_count.h"

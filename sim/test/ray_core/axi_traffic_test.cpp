@@ -142,7 +142,7 @@ class AxiTrafficTest : public testing::Test {
     ++clocks_;
   }
 
-  /// Offers the next beat of any burst. The data are noise if the beat has an error or if wild_.
+  /// Offers the next beat of any burst. Its data are noise if it has an error or wild_ is set.
   void offer_beat() {
     const std::size_t n = random_() % bursts_.size();
     Burst& burst = bursts_[n];
@@ -258,7 +258,7 @@ class AxiTrafficTest : public testing::Test {
     model_->s_axil_rready = 0;
     return data;
   }
-  /// Writes a plain register with writable `bits`. Returns false if refused because of a busy core.
+  /// Writes an `idle` register (registers.md) with writable `bits`. Returns false if refused.
   bool set(std::uint32_t address, std::uint32_t data, std::uint32_t bits = ~0u) {
     const unsigned response = write(address, data);
     EXPECT_TRUE(response == 0 ? !all_busy_ : any_busy_) << std::hex << address;

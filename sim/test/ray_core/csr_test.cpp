@@ -1,4 +1,4 @@
-// Compares csr with a model of its header: every word read, and every output in every clock, under
+// Compares csr with a model of its documentation: words read, and all outputs in every clock, under
 // AXI4-Lite accesses with random pauses on every channel.
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t kSeed = 20261122;
 constexpr unsigned kEvents = 11;  // ray_core_pkg::NumEvents
 
-/// Returns whether word `n` is a plain register.
+/// Returns whether word `n` is a plain register: its access in registers.md is `idle`.
 bool is_plain(unsigned n) {
   return (n >= 5 && n <= 9) || (n >= 12 && n < 27 && n % 4 != 3) || (n >= 28 && n <= 30);
 }

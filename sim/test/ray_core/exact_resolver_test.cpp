@@ -31,7 +31,7 @@ constexpr CoreSet kExact{.exact = true};
 /// The core has four rays, stacks of one group and caches of 16 lines.
 class ExactResolverTest : public testing::Test {
  protected:
-  /// Returns the bodies with each triangle twice, once with rotated corners: every hit is a tie.
+  /// Returns test::bodies() with each triangle twice, once with rotated corners: every hit ties.
   static std::vector<Corners> doubled() {
     std::vector<Corners> mesh = test::bodies();
     const std::size_t count = mesh.size();
@@ -39,7 +39,7 @@ class ExactResolverTest : public testing::Test {
     return mesh;
   }
 
-  /// Returns the results by ray. All results must be final (kEnd).
+  /// Traces rays; returns their results, indexed by tag. All results must be final (kEnd).
   static std::vector<CoreResult> words(CoreUnit& unit, std::span<const MemoryLine> lines,
                                        std::span<const CoreRay> rays) {
     std::vector<CoreResult> results, words(rays.size());

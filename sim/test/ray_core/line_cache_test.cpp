@@ -34,15 +34,15 @@ class LineCacheTest : public testing::Test {
     model_.reset();
   }
 
-  /// Returns the n-th line. Lines n >= kLines differ from the first kLines only in bits that
-  /// `part_` moves.
+  /// Returns the n-th line number. The first kLines are 0 to kLines - 1. Each further kLines are
+  /// these with one higher bit set, at a position that depends on n / kLines and on `part_`.
   [[nodiscard]] std::uint32_t line(unsigned n) const {
     const unsigned high = n / kLines;
     return n % kLines + (high == 0 ? 0 : kLines << (high + part_) % 24);
   }
 
-  /// Simulates a clock, with a chance of `of_8` in 8 of a new demand or prefetch request for one of
-  /// `range` lines. A prefetch request may be withdrawn.
+  /// Simulates a clock. If no request is offered, offers one with probability of_8 / 8, for one of
+  /// the first `range` lines: a demand or, unless all_wanted, a prefetch (which may be withdrawn).
   void clock(unsigned of_8, unsigned range, bool all_wanted = true) {
     if (model_->demand_i == 0 && random_() % 4 == 0) model_->valid_i = 0;
     if (model_->valid_i == 0 && random_() % 8 < of_8) {
@@ -181,7 +181,7 @@ TEST_F(LineCacheTest, LinesOnTheirWayAreReadOnce) {
   }
 }
 
-/// A line that was prefetched is not requested again on demand, neither in flight nor cached.
+/// A demand for a prefetched line, in flight or cached, does not request the line again.
 TEST_F(LineCacheTest, LinesThatWereNotWantedAreRead) {
   for (int part = 0; part < 200; ++part) {
     drain();

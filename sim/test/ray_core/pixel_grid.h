@@ -8,7 +8,7 @@
 
 namespace raygate {
 
-/// Pixels of a picture relative to the eye: the paper's equation 1. Vectors of any finite length.
+/// Pixels of a picture relative to the eye: the paper's equation 1. Vectors may be of any length.
 struct PixelGrid {
   glm::vec3 first{0.0f};  ///< from the eye to the middle of pixel (0, 0)
   glm::vec3 right{0.0f};  ///< from a pixel to the next pixel in its row

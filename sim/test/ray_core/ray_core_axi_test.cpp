@@ -73,8 +73,8 @@ TEST_F(RayCoreAxiTest, RaysAreGivenUp) {
   }
 }
 
-/// Reads do not depend on whether results are taken from the stream and the buffer: the core starts
-/// no more tests than it has room for.
+/// Even if no results are taken from the stream, the core accepts all lines that it requested: it
+/// starts a test only if it has room for the result.
 TEST_F(RayCoreAxiTest, ReadsDoNotWaitForResults) {
   look();
   takes_results_ = false;

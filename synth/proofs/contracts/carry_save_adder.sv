@@ -1,4 +1,5 @@
-// Contract of a carry-save adder, proven in step 4: the outputs are any two words with the sum of the three inputs.
+// Contract of a carry-save adder, proven in step 4 of the multiplier's proof (carry_save_preserves.sv): the outputs are
+// any two words whose sum, modulo 2**Width, is that of the three inputs.
 module carry_save_adder #(
   parameter int unsigned Width = 48
 ) (
