@@ -162,6 +162,10 @@ TEST(Options, ValuesThatAreImpossible) {
     expect_error({"a.obj", option}, "expected ");      // no value
     expect_error({"a.obj", option, ""}, "expected ");  // an empty value
   }
+  for (const char* next : {"-o", "--size=9x9"}) {
+    EXPECT_EQ(error_of({"a.obj", "--spp", next, "m"}), "--spp: expected a value (see --help)");
+  }
+  EXPECT_EQ(parse({"a.obj", "--stats=-q"}).output.stats, "-q");
 }
 
 TEST(Options, ThatExcludeEachOther) {
