@@ -87,8 +87,7 @@ std::optional<Variant> parse_variant(const std::string& text) {
 std::optional<CameraSetting> parse_camera(const std::string& text) {
   const std::vector<double> n = parse_list<double>(text);
   if (n.size() != 6 && n.size() != 7) return std::nullopt;
-  const bool are_finite =
-      std::ranges::all_of(n, [](double number) { return std::isfinite(number); });
+  const bool are_finite = std::ranges::all_of(n, [](double x) { return std::isfinite(x); });
   CameraSetting camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, std::nullopt, std::nullopt};
   if (n.size() == 7) camera.fov = n[6];
   if (!are_finite || camera.eye == camera.target || !kFovRange.contains(camera.fov.value_or(1.0))) {
@@ -626,6 +625,10 @@ Options with_values(const Options& scene, std::vector<OptionValue> given,
     }
     options.camera.camera.reset();  // overrides the scene file's camera
   }
+  std::optional<CameraSetting>& camera = options.camera.camera;
+  const std::optional<CameraSetting>& of_file = options.scene_file.camera.camera;
+  if (camera && !camera->fov && of_file) camera->fov = of_file->fov;
+  if (camera && camera->fov && table.given("fov").empty()) options.camera.fov.reset();
   check_engine_options(table, options);
   check_core_files(table, options);
   check_samples(table, options);
