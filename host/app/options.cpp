@@ -467,8 +467,8 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
   table.number("--spp", "N", "samples per pixel ({}; path by an environment: 16)", settings.samples,
                Range{1, 1 << 20}, kEverywhere | kMostUsed);
   table.number("--error", "X",
-               "adaptive sampling to error X, in steps of an 8-bit display: stop a pixel after 16 "
-               "samples if its error is X, after n if it is X n / 16",
+               "adaptive sampling: stop a pixel at n samples if its error is at most X n / 16 "
+               "steps of an 8-bit display: X at 16 samples, 4 X at 64",
                settings.error,
                Range{std::numeric_limits<double>::min(), 255.0,
                      "steps of an 8-bit display, above 0 and up to 255"},
