@@ -149,7 +149,8 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
       kInExr | kInPage | kMostUsed);
   table.value<Angles>(
       "--view", "NAME|AZ,EL",
-      "the whole scene: " + listed(names_of(kViews), ", ") + ", or azimuth and elevation (33,24)",
+      "the whole scene and its area lights: " + listed(names_of(kViews), ", ") +
+          ", or azimuth and elevation (33,24)",
       listed(names_of(kViews), ", ") +
           ", or AZIMUTH,ELEVATION in degrees (from -360 to 360, and from -90 to 90)",
       request.angles,
