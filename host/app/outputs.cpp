@@ -66,7 +66,7 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
       {"pictures", pictures},
       {"variant", options.variant ? options.variant->name : "binary32"},
       {"rays", render.rays, "rays of all kinds"},
-      {"camera_rays", render.camera_rays, "of these, from the camera"},
+      {"camera_rays", render.camera_rays, "from the camera (none in empty tiles; more at lights)"},
       {"shadow_rays", render.shadow_rays, "of these, between surfaces and lights"},
       {"records", work.records, "polygon records made"},
       {"tests", hit.tests, "tests of a ray against a polygon"},
