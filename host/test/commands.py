@@ -58,7 +58,6 @@ def prepare(folder: pathlib.Path) -> None:
     """Writes the files that the tutorials expect from the reader."""
     for name in ("cornell.obj", "cornell.mtl"):
         shutil.copy(ROOT / "scenes" / name, folder / name.replace("cornell.obj", "model.obj"))
-    shutil.copy(ROOT / "host/film/fuzz/seeds/flat.hdr", folder / "sky.hdr")
     (folder / "rays.csv").write_text("0,1,5,0,0,-1\n")
 
 
