@@ -41,8 +41,7 @@ std::string view_text(const CameraRequest& request, const Scene& scene, const Vi
   if (!request.up) text += " (usual in the format)";
   const glm::dvec3 eye = camera.eye + scene.origin, target = camera.target + scene.origin;
   text += "; --camera ";
-  for (int axis = 0; axis < 3; ++axis) text += format_number(eye[axis]) + ",";
-  for (int axis = 0; axis < 3; ++axis) text += format_number(target[axis]) + ",";
+  for (int i = 0; i < 6; ++i) text += format_number((i < 3 ? eye : target)[i % 3]) + ",";
   return text + format_number(*camera.fov);
 }
 
@@ -54,22 +53,17 @@ Framing frame_picture(const CameraRequest& request, const Scene& scene, double a
                                                               : scene.camera;
   const double fov = request.fov.value_or(Camera::kDefaultFov);
   const bool is_view = !given && !request.eye;
-  View view;
-  if (!given || request.ground.value_or(false)) {
-    const auto [azimuth, elevation] =
-        request.angles.value_or(std::pair(kDefaultAzimuth, kDefaultElevation));
-    view = {azimuth, elevation, request.up.value_or(scene.up)};
-  }
-  CameraSetting setting;  // in the scene's coordinates
+  const auto [azimuth, elevation] =
+      request.angles.value_or(std::pair(kDefaultAzimuth, kDefaultElevation));
+  const View view{azimuth, elevation, request.up.value_or(scene.up)};
+  // In the scene's coordinates.
+  CameraSetting setting = given ? *given : frame_scene(scene, aspect, fov, view);
   if (given) {
-    setting = *given;
     setting.eye -= scene.origin;
     setting.target -= scene.origin;
-    setting.lens = given->lens.overridden_by(request.lens);
-  } else {
-    setting = frame_scene(scene, aspect, fov, view);
-    setting.lens = request.lens;
   }
+  setting.lens = setting.lens.overridden_by(request.lens);
+  if (!setting.fov && scene.camera) setting.fov = scene.camera->fov;
   if (request.eye) setting.eye = *request.eye - scene.origin;
   if (request.target) setting.target = *request.target - scene.origin;
   if (request.up && !is_view) setting.up = request.up;

@@ -63,6 +63,11 @@ CommandLine OptionTable::split(const std::vector<std::string>& words) {
   bool asks_help = false, asks_version = false;
   flag("-h,--help", "print this text", asks_help);
   flag("--version", "print the version", asks_version);
+  const auto find_row = [&](const std::string& word) {
+    return std::ranges::find_if(rows_, [typed = split_at_equals(word).first](const Row& row) {
+      return std::ranges::count(row.names, typed) > 0;
+    });
+  };
   CommandLine line;
   for (auto word = words.begin(); word != words.end(); ++word) {
     if (*word == "--") {
@@ -73,27 +78,24 @@ CommandLine OptionTable::split(const std::vector<std::string>& words) {
       line.plain.push_back(*word);
       continue;
     }
-    const std::size_t end = std::min(word->find('='), word->size());
-    const std::string typed = word->substr(0, end);
-    const auto row = std::ranges::find_if(
-        rows_, [&](const Row& row) { return std::ranges::count(row.names, typed) > 0; });
+    const auto row = find_row(*word);
     if (row == rows_.end()) throw InputError(*word + ": unknown option (see --help)");
-    const bool has_value = end < word->size();
+    const bool has_value = word->find('=') != word->npos;
     if (row->value == nullptr && has_value) {
       throw InputError(*word + ": --" + row->name + " takes no value (see --help)");
     }
-    if (row->value != nullptr && !has_value && word + 1 == words.end()) {
+    const bool is_last = word + 1 == words.end() || find_row(word[1]) != rows_.end();
+    if (row->value != nullptr && !has_value && is_last) {
       throw InputError("--" + row->name + ": expected a value (see --help)");
     }
     line.values.push_back({row->name, row->value == nullptr ? ""
-                                      : has_value           ? word->substr(end + 1)
+                                      : has_value           ? split_at_equals(*word).second
                                                             : *++word});
+    asks_help = asks_help || row->name == "help";
+    asks_version = asks_version || row->name == "version";
   }
-  const auto has = [&](const char* name) {
-    return std::ranges::find(line.values, name, &OptionValue::name) != line.values.end();
-  };
-  if (has("version")) throw Information(std::string(kSoftware) + "\n");
-  if (has("help")) throw Information(help());
+  if (asks_version) throw Information(std::string(kSoftware) + "\n");
+  if (asks_help) throw Information(help());
   return line;
 }
 
@@ -128,16 +130,13 @@ void OptionTable::fail_value(const std::string& name, const std::string& expecte
 }
 
 void OptionTable::fail(const std::string& message, std::initializer_list<const char*> names) const {
-  bool is_typed = false;
-  const OptionValue* elsewhere = nullptr;
+  const OptionValue *typed = nullptr, *elsewhere = nullptr;
   for (const char* name : names) {
     const std::optional<OptionValue>& given = row(name).given;
-    if (!given) continue;
-    is_typed = is_typed || given->where.empty();
-    if (!given->where.empty()) elsewhere = &*given;
+    if (given) (given->where.empty() ? typed : elsewhere) = &*given;
   }
   if (elsewhere == nullptr) throw InputError(message);
-  if (!is_typed) throw InputError(elsewhere->where + ": " + message);
+  if (typed == nullptr) throw InputError(elsewhere->where + ": " + message);
   throw InputError(message + " (" + elsewhere->where + " sets " + elsewhere->name + ")");
 }
 
@@ -174,11 +173,8 @@ std::vector<std::string> split_at(char separator, const std::string& text) {
 
 std::string list_text(std::initializer_list<double> values) {
   std::string text;
-  for (const double value : values) {
-    if (!text.empty()) text += ',';
-    text += number_text(value);
-  }
-  return text;
+  for (const double value : values) text += number_text(value) + ",";
+  return text.substr(0, text.rfind(','));
 }
 
 std::pair<std::string, std::string> split_at_equals(const std::string& text) {

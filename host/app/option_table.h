@@ -193,8 +193,9 @@ class OptionTable {
   }
 
   /// Splits a command line without the program's name: "--name VALUE", "--name=VALUE", "-n VALUE",
-  /// flags, and other words; all words after "--" are plain. Does not interpret values. Throws
-  /// InputError for an unknown option or a missing value, and Information for --help and --version.
+  /// flags, and other words; all words after "--" are plain. A VALUE that is the name of an option
+  /// needs "=". Throws InputError for an unknown option or a missing value, and Information for
+  /// --help and --version.
   [[nodiscard]] CommandLine split(const std::vector<std::string>& words);
 
   /// Reads values of known options: row by row, each row's values in their order, so that the last

@@ -87,8 +87,7 @@ std::optional<Variant> parse_variant(const std::string& text) {
 std::optional<CameraSetting> parse_camera(const std::string& text) {
   const std::vector<double> n = parse_list<double>(text);
   if (n.size() != 6 && n.size() != 7) return std::nullopt;
-  const bool are_finite =
-      std::ranges::all_of(n, [](double number) { return std::isfinite(number); });
+  const bool are_finite = std::ranges::all_of(n, [](double x) { return std::isfinite(x); });
   CameraSetting camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, std::nullopt, std::nullopt};
   if (n.size() == 7) camera.fov = n[6];
   if (!are_finite || camera.eye == camera.target || !kFovRange.contains(camera.fov.value_or(1.0))) {
@@ -150,7 +149,8 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
       kInExr | kInPage | kMostUsed);
   table.value<Angles>(
       "--view", "NAME|AZ,EL",
-      "the whole scene: " + listed(names_of(kViews), ", ") + ", or azimuth and elevation (33,24)",
+      "the whole scene and its area lights: " + listed(names_of(kViews), ", ") +
+          ", or azimuth and elevation (33,24)",
       listed(names_of(kViews), ", ") +
           ", or AZIMUTH,ELEVATION in degrees (from -360 to 360, and from -90 to 90)",
       request.angles,
@@ -468,8 +468,8 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
   table.number("--spp", "N", "samples per pixel ({}; path by an environment: 16)", settings.samples,
                Range{1, 1 << 20}, kEverywhere | kMostUsed);
   table.number("--error", "X",
-               "adaptive sampling to error X, in steps of an 8-bit display: stop a pixel after 16 "
-               "samples if its error is X, after n if it is X n / 16",
+               "adaptive sampling: stop a pixel at n samples if its error is at most X n / 16 "
+               "steps of an 8-bit display: X at 16 samples, 4 X at 64",
                settings.error,
                Range{std::numeric_limits<double>::min(), 255.0,
                      "steps of an 8-bit display, above 0 and up to 255"},
@@ -626,6 +626,10 @@ Options with_values(const Options& scene, std::vector<OptionValue> given,
     }
     options.camera.camera.reset();  // overrides the scene file's camera
   }
+  std::optional<CameraSetting>& camera = options.camera.camera;
+  const std::optional<CameraSetting>& of_file = options.scene_file.camera.camera;
+  if (camera && !camera->fov && of_file) camera->fov = of_file->fov;
+  if (camera && camera->fov && table.given("fov").empty()) options.camera.fov.reset();
   check_engine_options(table, options);
   check_core_files(table, options);
   check_samples(table, options);

@@ -66,7 +66,7 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
       {"pictures", pictures},
       {"variant", options.variant ? options.variant->name : "binary32"},
       {"rays", render.rays, "rays of all kinds"},
-      {"camera_rays", render.camera_rays, "of these, from the camera"},
+      {"camera_rays", render.camera_rays, "from the camera (none in empty tiles; more at lights)"},
       {"shadow_rays", render.shadow_rays, "of these, between surfaces and lights"},
       {"records", work.records, "polygon records made"},
       {"tests", hit.tests, "tests of a ray against a polygon"},
@@ -85,6 +85,7 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
       {"output_stalls", hit.output_stalls, "clocks of pipelined lanes stalled by the consumer"},
       {"exact_clocks", hit.exact_clocks, "clocks of the ray cores' exact units"},
       {"clocks_per_test", ratio(hit.clocks, hit.unit_tests), "clocks / unit_tests"},
+      {"unfinished_pixels", render.unfinished_pixels, "pixels for which --error needs more --spp"},
       {"skipped.first_occluders", work.ended_early, "searches ended by the first occluder"},
       {"skipped.spare_samples", render.spare_samples, "samples that --error did not need"},
       {"seconds.load", report.load_seconds, "elapsed: reading the scene"},
@@ -157,22 +158,20 @@ std::string to_text(const Report& report, const Options& options) {
                           " camera, " + format_count(render.shadow_rays) + " shadow, " +
                           format_count(others) +
                           " others): " + rate(render.rays, render.wall_seconds, "rays"));
-  std::string clocks;
-  if (hit.clocks > 0) {
-    clocks = ", " + format_count(hit.clocks) + " clocks, " +
-             format_fixed(ratio(hit.clocks, hit.unit_tests), 2) + " per test";
-  }
+  const std::string clocks =
+      hit.clocks == 0 ? ""
+                      : ", " + format_count(hit.clocks) + " clocks, " +
+                            format_fixed(ratio(hit.clocks, hit.unit_tests), 2) + " per test";
   text +=
       row("tests", format_count(hit.tests) + ", " + format_fixed(ratio(hit.tests, render.rays), 1) +
                        " per ray" + clocks + ": " + rate(hit.tests, render.wall_seconds, "tests"));
   if (const RenderSettings& asked = options.render; asked.error > 0.0) {
-    const double all =
-        static_cast<double>(asked.window.width()) * asked.window.height() * asked.samples;
-    const double taken = all - static_cast<double>(render.spare_samples);
-    text += row("samples", format_fixed(100.0 * taken / all, 1) + " % of " +
-                               format_count(static_cast<std::uint64_t>(asked.samples)) +
-                               " per pixel; skipped " + format_count(render.spare_samples) +
-                               " that --error did not need");
+    const std::uint64_t pixels = asked.window.pixels(), most = std::uint64_t(asked.samples);
+    text +=
+        row("samples", format_fixed(100.0 - 100.0 * ratio(render.spare_samples, pixels * most), 1) +
+                           " % of " + format_count(most) + " per pixel; --error needs more for " +
+                           format_fixed(100.0 * ratio(render.unfinished_pixels, pixels), 1) +
+                           " % of the pixels");
   }
   if (options.engine == Engine::kCheck) {
     text += row("check", "rtl and cpu agreed on all " + format_count(render.rays) + " rays");

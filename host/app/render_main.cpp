@@ -74,8 +74,10 @@ Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
   Film& film = file.film;
   const SampleRange there = samples_of(file.metadata), wanted = samples_of(metadata);
   if (there.first != wanted.first || there.end > wanted.end) {
+    const bool is_longer = there.first == wanted.first && options.render.end_sample == 0;
     throw InputError(name + ": found samples " + to_string(there) + ", expected the first of " +
-                     to_string(wanted));
+                     to_string(wanted) +
+                     (is_longer ? "; try --spp " + std::to_string(there.end) : ""));
   }
   // A single sample is at its pixel's centre; the first of several samples is not.
   const auto samples = file.metadata.attributes.find("spp");
@@ -83,12 +85,10 @@ Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
     samples->second = std::to_string(options.render.samples);
   }
   const RenderSettings& render = options.render;
-  if (const auto difference = different_picture(file, metadata, render.width, render.height)) {
+  if (const auto difference = different_picture(file, metadata, render.width, render.height))
     throw InputError(name + ": found " + *difference + " as this run has it");
-  }
-  if (film.window != render.window) {
+  if (film.window != render.window)
     throw InputError(name + ": found another crop, expected that of this run");
-  }
   // A film of one pixel with all fields that this run needs.
   Film needed = make_film(1, 1, {0, 0, 1, 1}, options.output.needed_channels());
   add_sums(needed, render.error > 0.0);
@@ -118,11 +118,14 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
   const auto end_interrupted = [&](const Film& film) {
     const int signal = interruption();
     const auto is_miss = [](const glm::vec4& color) { return color.a == 0.0f; };
-    if (std::ranges::all_of(film.color, is_miss)) {
-      throw Interrupted(signal, "no file was changed");
-    }
+    if (std::ranges::all_of(film.color, is_miss)) throw Interrupted(signal, "no file was changed");
     write(film);
     std::string outcome = "wrote what there was: " + listed(outputs.pictures());
+    if (const auto& taken = film.sums.samples; !taken.empty()) {
+      const auto [least, most] = std::ranges::minmax(taken);
+      outcome += " (" + std::to_string(least) + " to " + std::to_string(most) + " of " +
+                 std::to_string(options.render.samples) + " samples per pixel)";
+    }
     if (film.keeps_sums && outputs.exr) {
       outcome += "; --resume " + outputs.exr->string() + " goes on from there";
     }

@@ -53,9 +53,10 @@ struct RenderStats {
   double shade_seconds = 0.0;      ///< generating and shading rays
   double wall_seconds = 0.0;
   double processor_seconds = 0.0;
-  std::uint64_t spare_samples = 0;  ///< samples that adaptive sampling did not need
-  int missing_threads = 0;          ///< threads that could not be started
-  bool cancelled = false;           ///< the monitor stopped the render; the film is incomplete
+  std::uint64_t spare_samples = 0;      ///< samples that adaptive sampling did not need
+  std::uint64_t unfinished_pixels = 0;  ///< pixels whose error needs more than the maximum samples
+  int missing_threads = 0;              ///< threads that could not be started
+  bool cancelled = false;               ///< the monitor stopped the render; the film is incomplete
 };
 
 }  // namespace raygate

@@ -279,8 +279,10 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
       .run(std::move(first_intersector));
   if (!stats.cancelled) film.keeps_sums = settings.channels.sums;
   if (settings.error > 0.0) {
-    for (const std::uint32_t samples : film.sums.samples) {
-      stats.spare_samples += static_cast<std::uint32_t>(settings.samples) - samples;
+    for (std::size_t i = 0; i < film.color.size(); ++i) {
+      const auto samples = static_cast<int>(film.sums.samples[i]);
+      stats.spare_samples += static_cast<std::uint64_t>(settings.samples - samples);
+      if (!has_converged(film.sums.error[i], samples, settings.error)) ++stats.unfinished_pixels;
     }
   }
   stats.wall_seconds = wall.lap();

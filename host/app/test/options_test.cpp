@@ -18,6 +18,8 @@
 namespace raygate {
 namespace {
 
+using namespace std::string_literals;
+
 Options parse(std::initializer_list<const char*> arguments) {
   return parse_options({arguments.begin(), arguments.end()});
 }
@@ -162,6 +164,10 @@ TEST(Options, ValuesThatAreImpossible) {
     expect_error({"a.obj", option}, "expected ");      // no value
     expect_error({"a.obj", option, ""}, "expected ");  // an empty value
   }
+  for (const char* next : {"-o", "--size=9x9"}) {
+    EXPECT_EQ(error_of({"a.obj", "--spp", next, "m"}), "--spp: expected a value (see --help)");
+  }
+  EXPECT_EQ(parse({"a.obj", "--stats=-q"}).output.stats, "-q");
 }
 
 TEST(Options, ThatExcludeEachOther) {
@@ -226,6 +232,24 @@ TEST_F(OptionsOfASceneFile, AreTakenWhereTheCommandLineHasNone) {
     EXPECT_EQ(other.camera.camera->eye, glm::dvec3(0, 0, 9));
   }
   expect_error({obj.c_str(), "--stats", json.c_str()}, "would overwrite");
+}
+
+TEST_F(OptionsOfASceneFile, ACameraWithoutAFieldOfViewKeepsTheScenes) {
+  const auto fov = [](const std::string& scene, const char* camera) {
+    const CameraRequest request = parse({scene.c_str(), "--camera", camera}).camera;
+    Scene with_camera;  // as of a glTF file
+    with_camera.camera = {{1, 1, 1}, {0, 0, 0}, {}, 20.0};
+    return frame_picture(request, with_camera, 1.0).camera.vertical_fov_degrees();
+  };
+  EXPECT_EQ(fov("a.gltf", "0,0,9,0,0,0"), 20.0);
+  EXPECT_EQ(fov("a.gltf", "0,0,9,0,0,0,50"), 50.0);
+  const std::string place = R"("eye": [1, 2, 3], "target": [0, 0, 0])";
+  for (const std::string& camera : {R"("fov": 32)"s, R"("fov": 32, )" + place}) {
+    const std::string json = write("a.json", R"({"camera": {)" + camera + "}}");
+    EXPECT_EQ(fov(json, "0,0,9,0,0,0"), 32.0) << camera;
+    EXPECT_EQ(fov(json, "0,0,9,0,0,0,50"), 50.0) << camera;
+  }
+  EXPECT_EQ(fov(write("a.json", R"({"camera": {)" + place + "}}"), "0,0,9,0,0,0"), 35.0);
 }
 
 TEST_F(OptionsOfASceneFile, AreRefusedWithTheirPlace) {

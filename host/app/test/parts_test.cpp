@@ -167,6 +167,8 @@ TEST_F(Parts, KeepTheirSumsWhenInterruptedAgain) {
          .terminal = true,
          .signal_when_busy = SIGINT});
     EXPECT_EQ(outcome.status, 128 + SIGINT) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "error: interrupted; wrote what there was: b.exr ("));
+    EXPECT_TRUE(contains(outcome.err, " of 4000 samples per pixel); --resume"));
     EXPECT_TRUE(contains(outcome.err, "--resume b.exr goes on from there"));
   }
 }
@@ -306,7 +308,9 @@ TEST_F(Parts, OfDifferentPicturesAreRefused) {
   expect_refused(part({"--resume", "b.exr", "--seed", "1"}),
                  "b.exr: found seed 0, expected seed 1 as this run has it");
   expect_refused(part({"--resume", "b.exr", "--samples", "0:3"}),
-                 "b.exr: found samples 0:5, expected the first of 0:3");
+                 "b.exr: found samples 0:5, expected the first of 0:3\n");
+  expect_refused(part({"--resume", "b.exr", "--spp", "3"}),
+                 "b.exr: found samples 0:5, expected the first of 0:3; try --spp 5\n");
   expect_refused(part({"--resume", "b.exr", "--channels", "Albedo"}),
                  "b.exr: found no channel Albedo");
   expect_refused(part({"--samples", "0:13"}), "--samples: found '0:13', expected some of the 12");

@@ -177,7 +177,7 @@ TEST(AdaptiveSampling, GivesSamplesWhereTheErrorIs) {
   RenderStats stats;
   const Film film = uneven.film(adaptive(44, 34, 200, 0.4), cpu(uneven.bvh), stats);
   std::set<std::uint32_t> counts;
-  std::uint64_t taken = 0;
+  std::uint64_t taken = 0, unfinished = 0;
   for (int y = 0; y < 34; ++y) {
     for (int x = 0; x < 44; ++x) {
       const std::size_t i = film.index_of(x, y);
@@ -187,6 +187,7 @@ TEST(AdaptiveSampling, GivesSamplesWhereTheErrorIs) {
       EXPECT_EQ(samples, film.sums.samples[first]) << "a block is judged as one";
       counts.insert(samples);
       taken += samples;
+      unfinished += samples == 200;
       if (samples < 200) {
         EXPECT_TRUE(has_converged(film.sums.error[i], static_cast<int>(samples), 0.4))
             << x << " " << y;
@@ -197,6 +198,7 @@ TEST(AdaptiveSampling, GivesSamplesWhereTheErrorIs) {
   EXPECT_EQ(*counts.rbegin(), 200u);
   EXPECT_GE(counts.size(), 4u);
   EXPECT_EQ(stats.spare_samples, 44u * 34u * 200u - taken);
+  EXPECT_EQ(stats.unfinished_pixels, unfinished);
 }
 
 TEST(AdaptiveSampling, FilmDoesNotDependOnThreadsTilesOrEngine) {

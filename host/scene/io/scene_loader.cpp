@@ -65,7 +65,7 @@ CameraRequest read_camera(const JsonValue& value) {
   const JsonValue target = value.at("target");
   const CameraSetting& camera = request.camera.emplace(
       CameraSetting{value.at("eye").vector(), target.vector(), std::exchange(request.up, {}),
-                    std::exchange(request.fov, {})});
+                    std::exchange(request.fov, {}).value_or(Camera::kDefaultFov)});
   const glm::dvec3 view = camera.target - camera.eye;
   if (view == glm::dvec3(0.0)) target.fail("another point than the eye");
   if (!up) return request;
