@@ -48,8 +48,7 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
             print(report.blocks_table(record))
     timed = [record for record in records if "path" in record]
     if timed:
-        best = min((record for record in timed if record["target"] == timed[0]["target"]),
-                   key=lambda record: record["delay_ns"])
+        best = min((record for record in timed if record["target"] == timed[0]["target"]), key=lambda record: record["delay_ns"])
         ends = f", from {best['from']} to {best['to']}" if "from" in best else ""
         print(f"Critical path, {report.title(best['target'])}, {best['flow']}{ends}:\n")
         print(report.path_table(best))

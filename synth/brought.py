@@ -200,8 +200,7 @@ def _lint(top: str, file: pathlib.Path, parameters: list[str]) -> None:
     done = subprocess.run(
         [tools.find("verilator"), "--lint-only", "-Wno-style", "-Wno-WIDTH", "-Wno-UNOPTFLAT", "--top-module", top,
          *(f"-G{key}={value}" for key, value in SAMPLES.items() if key in parameters),
-         *(f"-I{catalogue.HW / each}" for each in FOLDERS), *_packages(), file],
-        capture_output=True, text=True, check=False)
+         *(f"-I{catalogue.HW / each}" for each in FOLDERS), *_packages(), file], capture_output=True, text=True, check=False)
     found = re.search(r"^%(?:Error|Warning)(?:-\w+)?: (\S+?:\d+:\d+: .*)$", done.stderr, re.M)
     if found or done.returncode:
         raise ValueError(urllib.parse.unquote(found[1]) if found else f"{file}: {done.stderr}")

@@ -20,16 +20,14 @@ class Cores(unittest.TestCase):
     def write(self, core, files, depends):
         """Writes a core and its files."""
         (self.hw / core).mkdir()
-        lines = ["CAPI=2:", *(f"      - {name}" for name in files),
-                 *(f"      - raygate:hw:{name}" for name in depends)]
+        lines = ["CAPI=2:", *(f"      - {name}" for name in files), *(f"      - raygate:hw:{name}" for name in depends)]
         (self.hw / core / f"{core}.core").write_text("\n".join(lines) + "\n")
         for name in files:
             (self.hw / core / name).touch()
 
     def test_order(self):
         """The cores that a core uses come first. Within a core, packages come first."""
-        self.assertEqual([file.name for file in cores.files("fp", self.hw)],
-                         ["adder.sv", "fp_pkg.sv", "fp_adder.sv"])
+        self.assertEqual([file.name for file in cores.files("fp", self.hw)], ["adder.sv", "fp_pkg.sv", "fp_adder.sv"])
         self.assertEqual(cores.names(self.hw), ["arith", "fp"])
 
     def test_used(self):
@@ -42,12 +40,10 @@ class Cores(unittest.TestCase):
 
     def test_list_and_folder_disagree(self):
         """Reports an unlisted file, a missing file, and a missing list."""
-        for change, said in [(lambda: (self.hw / "arith" / "new.sv").touch(),
-                              r"arith\.core: new\.sv is unlisted, expected a line"),
+        for change, said in [(lambda: (self.hw / "arith" / "new.sv").touch(), r"arith\.core: new\.sv is unlisted, expected a line"),
                              (lambda: (self.hw / "fp" / "fp_pkg.sv").unlink(),
                               r"fp\.core: fp_pkg\.sv is listed, expected the file"),
-                             (lambda: (self.hw / "arith" / "arith.core").unlink(),
-                              r"arith\.core: not found")]:
+                             (lambda: (self.hw / "arith" / "arith.core").unlink(), r"arith\.core: not found")]:
             change()
             with self.assertRaisesRegex(ValueError, said):
                 cores.files("fp", self.hw)

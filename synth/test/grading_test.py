@@ -68,9 +68,7 @@ MODULE = {
     "cells": [
         cell("FULL_ADDER", {"A": 2, "B": 4, "C": 5}, {"SUM": 10, "CARRY": 11}),
         cell("FULL_ADDER", {"A": 3, "B": 4, "C": 11}, {"SUM": 13, "CARRY": 14}),
-        cell("MULTIPLEXER", {"WHEN_0": 13, "WHEN_1": 13, "SELECT": 5}, {"OUT": 12}),
-    ],
-}
+        cell("MULTIPLEXER", {"WHEN_0": 13, "WHEN_1": 13, "SELECT": 5}, {"OUT": 12})]}
 
 
 class Count(unittest.TestCase):

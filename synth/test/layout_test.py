@@ -71,8 +71,7 @@ class Reading(unittest.TestCase):
             file.write_text(LEF)
             found = lef.read(file)
             self.assertEqual(found.layers, {"metal1": LAYERS["metal1"]})
-            self.assertEqual(found.macros["INVX1"],
-                             lef.Macro(4.8, 20, {"A": [Rect("metal1", 0.4, 6.8, 1.2, 7.6)]}))
+            self.assertEqual(found.macros["INVX1"], lef.Macro(4.8, 20, {"A": [Rect("metal1", 0.4, 6.8, 1.2, 7.6)]}))
             file.write_text("VERSION 5.4 ;\n")
             with self.assertRaisesRegex(ValueError, "0 routing layers and 0 cells"):
                 lef.read(file)
@@ -137,8 +136,7 @@ class Estimate(unittest.TestCase):
         """Wires connect all pins, vertically in metal 2 and horizontally in metal 3. A net with one pin has no wires."""
         technology = Technology(LAYERS, {"INVX1": lef.Macro(4.8, 20, {
             "A": [Rect("metal1", 0.4, 6, 1.2, 8)], "Y": [Rect("metal1", 2, 6, 2.8, 8)]})})
-        nets = Netlist("top", {"c0": Cell("a", "INVX1", {"A": "p0", "Y": "n1"}),
-                               "c1": Cell("b", "INVX1", {"A": "n1", "Y": "n2"})},
+        nets = Netlist("top", {"c0": Cell("a", "INVX1", {"A": "p0", "Y": "n1"}), "c1": Cell("b", "INVX1", {"A": "n1", "Y": "n2"})},
                        {"p0": Port("a_i", False, "p0")})
         placed = place.Placement(nets, technology, {"c0": place.Site(0, 0, "N"), "c1": place.Site(8, 20, "FS")}, {}, 16, 40)
         placed.__dict__["pins"] = {"p0": (-0.8, 8.0, "metal3")}
@@ -197,8 +195,7 @@ class Adder(unittest.TestCase):
     def test_laid_out(self):
         """All nets are routed. Wires increase the delay, but only a little, because the adder is small."""
         design = catalogue.design("adder", adder="ripple", Width=8)
-        with (tempfile.TemporaryDirectory() as name,
-              mock.patch.object(store, "OUT", pathlib.Path(name))):
+        with (tempfile.TemporaryDirectory() as name, mock.patch.object(store, "OUT", pathlib.Path(name))):
             job = flow.Job(design, catalogue.library("osu035"), "cells")
             got, _ = flow.make(job)
             self.assertEqual((got["cells"], got["failed"]), (8, 0))
@@ -219,8 +216,7 @@ class Placement(unittest.TestCase):
         """Cells do not overlap within rows, ports lie around the core, and the density is the requested one."""
         library = catalogue.library("osu035")
         design = catalogue.design("adder", adder="prefix", Width=16)
-        with (tempfile.TemporaryDirectory() as name,
-              mock.patch.object(store, "OUT", pathlib.Path(name))):
+        with (tempfile.TemporaryDirectory() as name, mock.patch.object(store, "OUT", pathlib.Path(name))):
             mapping.synthesise(design, library, "fast")
             (run,) = (store.OUT / "runs").iterdir()
             nets = netlist.parse(mapping.top_module(run / "netlist.json"), "adder")

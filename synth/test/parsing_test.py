@@ -49,8 +49,7 @@ class Parsing(unittest.TestCase):
         """The delay is arrival plus set-up time. Steps have pins and cells."""
         delay, steps = mapping.critical_path(OPENSTA)
         self.assertEqual(delay, 0.22)
-        self.assertEqual([step["pin"] for step in steps],
-                         ["a_i[0]", "_1_/A", "_1_/Y", "_2_/D"])
+        self.assertEqual([step["pin"] for step in steps], ["a_i[0]", "_1_/A", "_1_/Y", "_2_/D"])
         self.assertEqual(steps[2]["delay"], 0.12)
 
     def test_registers(self):
@@ -99,8 +98,7 @@ class Blocks(unittest.TestCase):
         self.assertEqual(memories, {"line_cache$ray_core.u_memory.u_cache": 6144, "ray_core": 6144})
         self.assertEqual(mapping.block_costs(STAT, memories), {
             "the rest": {"count": 1, "area": 7, "bits": 6144},
-            "memory_subsystem": {"count": 2, "area": 461, "bits": 4 * 6144},
-            "vec_add": {"count": 1, "area": 150, "bits": 0}})
+            "memory_subsystem": {"count": 2, "area": 461, "bits": 4 * 6144}, "vec_add": {"count": 1, "area": 150, "bits": 0}})
 
     def test_a_dump_of_one_module_names_none(self):
         text = "  cell \\kept_memory \\words\n    parameter \\BITS 40\n  end\n"
@@ -121,8 +119,7 @@ class Wrappers(unittest.TestCase):
         self.assertEqual(found, {"from": "u_a.sum_q", "to": "u_b.norm_q", "logic": 1.0, "wires": 2.5})
 
     def test_clocks_a_test_are_those_of_the_headers(self):
-        self.assertEqual([fpga.period(top) for top in ("hit_test_unit", "general_hit_test_unit", "hit_test_pipeline")],
-                         [7, 10, 1])
+        self.assertEqual([fpga.period(top) for top in ("hit_test_unit", "general_hit_test_unit", "hit_test_pipeline")], [7, 10, 1])
 
     def test_registered(self):
         """All inputs and outputs get registers."""
