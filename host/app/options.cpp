@@ -286,7 +286,7 @@ void check_core_files(const OptionTable& table, const Options& options) {
   }
 }
 
-/// Checks --samples, and channels that exist with adaptive sampling only.
+/// Throws InputError if --samples does not fit other options, or --false-colour lacks --error.
 void check_samples(const OptionTable& table, Options& options) {
   const RenderSettings& render = options.render;
   if (render.end_sample > 0) {

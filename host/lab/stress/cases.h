@@ -82,7 +82,7 @@ struct Truth {
   std::vector<Verdict> verdicts;  ///< by ray, then by triangle
   /// For each ray, the triangles that it hits, in exact order: nearest first, ties by index.
   std::vector<std::vector<std::uint32_t>> orders;
-  /// By ray: two of its hits have equal distance, or the tie-break was used.
+  /// By ray: whether two of its hits have equal distance, or the tie-break was used.
   std::vector<bool> nearest_tied;
 
   /// Returns the triangle that a ray hits first.
