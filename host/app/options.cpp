@@ -72,7 +72,7 @@ bool read_size(const std::string& text, RenderSettings& settings) {
   return kSideRange.contains(settings.width) && kSideRange.contains(settings.height);
 }
 
-/// Returns the variant with a name in variants.json or a format such as "e8p15".
+/// Returns the variant of `text`: a name in variants.json, or a format such as "e8p15".
 std::optional<Variant> parse_variant(const std::string& text) {
   for (const Variant& variant : all_variants_of_arithmetic()) {
     if (variant.name == text) return variant;

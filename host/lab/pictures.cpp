@@ -1,5 +1,4 @@
-// Pictures in every variant of arithmetic, and the wrong decisions of the variant's hit tests on
-// camera rays.
+// Pictures in every variant of arithmetic, and wrong decisions of its hit tests on camera rays.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <bit>

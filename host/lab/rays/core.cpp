@@ -1,6 +1,5 @@
-// Clocks, and lines and bytes of memory read, per ray of the simulated ray core; by kind of ray or
-// for all rays of an image, and by memory latency. A result that differs from the cpu engine's ends
-// the run.
+// Clocks, and memory lines and bytes read, per ray of the simulated ray core: by kind of ray or for
+// an image, and by memory latency. A result that differs from the cpu engine's ends the run.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>

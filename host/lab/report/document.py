@@ -25,7 +25,8 @@ def number(value: object, form: str, dash: str = "-") -> str:
 def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, comma: str) -> tuple[list[str], list[list[str]]]:
     """Returns the heads of the columns, and the cells of each row. `dash` replaces missing values; `comma` separates thousands.
 
-    A column's expression can use the row's values by name, the whole row as `row`, and all names of templates. """
+    A column's expression can use the row's values by name, the whole row as `row`, and all names of templates.
+    """
     parts = [COLUMN.match(column) for column in (one for each in columns for one in ([each] if isinstance(each, str) else each))]
     forms = [part["form"] or "" for part in parts]
     values = [ENVIRONMENT.compile_expression(part["expression"] or part["head"].replace(" ", "_")) for part in parts]

@@ -23,7 +23,7 @@ class Random {
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
-  /// Returns a number whose logarithm is uniformly distributed.
+  /// Returns a number from `low` to `high` whose logarithm is uniformly distributed.
   double log_uniform(double low, double high) {
     return std::exp(uniform(std::log(low), std::log(high)));
   }

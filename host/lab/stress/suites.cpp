@@ -248,8 +248,7 @@ Shot stack_shot(Random& random) {
   return aimed(shot_at(std::move(triangles), glm::dvec3(0.0), random), random);
 }
 
-/// Makes rays (almost) parallel to axes, from points in planes of faces. BVHs must not cull these
-/// rays.
+/// Makes rays (almost) parallel to axes, from points in planes of faces. No BVH may cull these.
 Shot axis_shot(Random& random, const MeshPointer& mesh) {
   Shot shot{mesh};
   const Mesh& box = *mesh;

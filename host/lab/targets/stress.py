@@ -15,8 +15,7 @@ KINDS = FAULTS[1:4]  # reported separately, per ray
 
 
 def steps(part: str, given: argparse.Namespace, tests: int, *words: object) -> list[Step]:
-    """Returns a step for each suite, with `tests` tests per suite unless `given` says otherwise. `words`: more arguments of `lab
-    stress`."""
+    """Returns a step for each suite, with `tests` tests per suite unless `given` says otherwise. `words`: more arguments of `lab`."""
     tests = given.tests or (100_000 if given.quick else tests)
     suites = subprocess.run([LAB, "stress", "--list"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
     return [Step(part, suite, ("stress", "--suite", suite, "--tests", tests, "--seed", given.seed, *words)) for suite in suites]
@@ -40,8 +39,7 @@ def total(rows: list[dict]) -> dict:
 
 
 def cases(rows: list[dict], key: str) -> int:
-    """Returns the number of distinct tests of subjects whose column `key` is true. Of each suite, only the subject with most tests
-    counts."""
+    """Returns the number of distinct tests of subjects whose column `key` is true. Per suite, the one with most tests counts."""
     most: dict[str, int] = {}
     for row in rows:
         most[row["suite"]] = max(most.get(row["suite"], 0), row["tests"] if row[key] else 0)

@@ -54,7 +54,7 @@ def brought_files(words: list[str]) -> dict[str, str]:
 
 
 def table(words: list[str]) -> list[dict]:
-    """Returns rows as in variants.json: binary32; if the user's variant is serial, the paper's unit in binary32; and the user's variant,
+    """Returns rows as in variants.json: binary32; if the user's variant is serial, binary32 in the paper's unit; and the user's variant,
     which may also have an `adder`."""
     files = brought_files(words)
     mine: dict = dict(read_word(word) for word in words if word.partition("=")[0] not in files)
