@@ -11,9 +11,10 @@
 
 namespace raygate {
 
-/// Returns a factory of intersectors, which own their simulated models. `bvh` must outlive both of
-/// these. `image` is the BVH's memory image for ray cores; if null, it is made when needed. Builds
-/// the engine's simulated model if needed. Throws InputError if the model cannot be built.
+/// Returns a factory of intersectors, which own their simulated models. `bvh` must outlive factory
+/// and intersectors. `image` is the BVH's memory image for ray cores; if null, it is made when
+/// needed. Builds the engine's simulated model if needed. Throws InputError if the model cannot be
+/// built.
 [[nodiscard]] IntersectorFactory make_intersector_factory(
     const EngineOptions& options, const Bvh& bvh,
     std::shared_ptr<const MemoryImage> image = nullptr);

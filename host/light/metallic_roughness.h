@@ -182,7 +182,7 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
 
  private:
-  /// Returns albedos at a cosine, of facets of reflectance 1 (first), of Schlick's weight (second).
+  /// Returns facets' albedos at a cosine: `first` for reflectance 1, `second` for Schlick's weight.
   [[nodiscard]] RAYGATE_INLINE Shares shares_at(const T& cosine) const {
     if (!is_rough()) return {spread<T>(1.0f), schlick_weight(cosine)};
     return albedo->at(cosine, alpha);
