@@ -28,14 +28,14 @@ int why_output_failed = 0;  // errno of a failed print; 0: none failed
 std::atomic<int> noted_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
 
-/// Memory that is released at the first failed allocation. The error message needs memory, and so
-/// do some destructors, such as those of JSON values.
+/// Size in bytes of the memory that is released at the first failed allocation. The error message
+/// needs memory, and so do some destructors, such as those of JSON values.
 constexpr std::size_t kReserve = std::size_t{1} << 20;
 std::atomic<void*> reserve = nullptr;
 
 void note(int signal) { noted_signal = signal; }
 
-/// Returns the length of the UTF-8 character at the start of `text` if it is printable, else 0.
+/// Returns the bytes of the UTF-8 character at the start of `text`; 0 if it is not printable.
 std::size_t shown_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);

@@ -31,8 +31,7 @@ namespace raygate {
 /// Returns "rendering: 45 %, 12.3 s left". `fraction`: done, in [0, 1]; `elapsed`: in seconds.
 [[nodiscard]] std::string progress_text(double fraction, double elapsed);
 
-/// A progress line on standard error, redrawn in place and erased at the end. Silent if standard
-/// error is not a terminal.
+/// A progress line on standard error, if this is a terminal. Redrawn in place; erased at the end.
 class ProgressLine {
  public:
   /// Starts the clock. Prints nothing unless `enabled`.

@@ -19,7 +19,7 @@
 namespace raygate {
 namespace {
 
-/// Returns the tester for the simulated unit or its model.
+/// Returns a tester with the hit-test unit of the options, simulated or as a reference model.
 std::unique_ptr<HitTester> make_tester(const EngineOptions& options) {
   if (options.variant) return make_variant_tester(*options.variant);
   if (options.unit == "serial") {
@@ -32,7 +32,7 @@ std::unique_ptr<HitTester> make_tester(const EngineOptions& options) {
   return std::make_unique<PipelineHitTester>(std::move(unit));
 }
 
-/// Returns a ray core, or a board with one.
+/// Returns the options' ray core: reference model, simulation, or board at a serial port.
 std::unique_ptr<CoreUnit> make_core(const EngineOptions& options) {
   if (options.engine == Engine::kModel) {
     return std::make_unique<ReferenceCore>(ReferenceCore::kStackDepth, true);

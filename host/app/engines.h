@@ -11,14 +11,15 @@
 
 namespace raygate {
 
-/// Returns a factory of intersectors, which own their simulated models. `bvh` must outlive both.
-/// `image` is the BVH's memory image for ray cores; if null, it is made when needed. Builds the
-/// engine's simulated model if needed. Throws InputError if the model cannot be built.
+/// Returns a factory of intersectors, which own their simulated models. `bvh` must outlive factory
+/// and intersectors. `image` is the BVH's memory image for ray cores; if null, it is made when
+/// needed. Builds the engine's simulated model if needed. Throws InputError if the model cannot be
+/// built.
 [[nodiscard]] IntersectorFactory make_intersector_factory(
     const EngineOptions& options, const Bvh& bvh,
     std::shared_ptr<const MemoryImage> image = nullptr);
 
-/// Returns the memory image of `bvh` for the engine's ray cores; null if the engine has none.
+/// Returns the memory image of `bvh` for the engine's ray cores; null if it uses none.
 [[nodiscard]] std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine,
                                                                    const Bvh& bvh);
 

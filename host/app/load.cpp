@@ -30,7 +30,7 @@ Scene load(const SceneFile& file, const LoadOptions& options, const EnvironmentS
 
 namespace {
 
-/// Returns a view's options: "--view 33,24 --up y (usual in the format); --camera ...".
+/// Returns the options for a view: "--view 33,24 --up y (usual in the format); --camera ...".
 std::string view_text(const CameraRequest& request, const Scene& scene, const View& view,
                       const CameraSetting& camera) {
   std::string text = "--view " + format_number(view.azimuth) + "," + format_number(view.elevation);

@@ -30,9 +30,9 @@ struct Framing {
   CameraRequest request;  ///< request for the same framing; members without effect are unset
 };
 
-/// Chooses the camera: the requested one, else the scene's, else a view of the whole scene. Scenes
-/// without lights get default lights and, in a default view from above, a ground. `aspect`: width /
-/// height of the picture. Throws InputError as Camera::look_at and frame_scene do.
+/// Chooses the first of: the requested camera, the scene's camera, a view of the whole scene.
+/// Scenes without lights get default lights. A view of such a scene from above also gets a ground.
+/// `aspect`: picture's width / height. Throws InputError as Camera::look_at and frame_scene do.
 [[nodiscard]] Framing frame_picture(const CameraRequest& request, const Scene& scene,
                                     double aspect);
 

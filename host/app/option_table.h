@@ -138,8 +138,8 @@ class OptionTable {
            const std::string& expected, const Read& read, const Show& show = {},
            unsigned places = kNowhere);
 
-  /// Adds an option. `parse` returns the value of its text, or nullopt if the text is not as
-  /// expected. `target`: a T or an optional T. `show` returns the text of a value.
+  /// Adds an option. `parse` returns the value of a text, or nullopt if the text is not valid.
+  /// `target`: a T or an optional T. `show` returns the text of a value.
   template <typename T, typename Target>
   void value(const std::string& names, const char* value, const std::string& help,
              const std::string& expected, Target& target,
@@ -198,8 +198,8 @@ class OptionTable {
   /// --help and --version.
   [[nodiscard]] CommandLine split(const std::vector<std::string>& words);
 
-  /// Reads values of known options: row by row, each row's values in their order, so that the last
-  /// one counts. Throws InputError "--size: found 'big', expected WIDTHxHEIGHT".
+  /// Reads values of known options in the order of the rows. If an option has several values, the
+  /// last one counts. Throws InputError "--size: found 'big', expected WIDTHxHEIGHT".
   void read(const std::vector<OptionValue>& values);
 
   /// Splits a command line and reads its values.
@@ -208,9 +208,9 @@ class OptionTable {
   /// Returns the last value read for an option, which is named without dashes; "" if there is none.
   [[nodiscard]] std::string given(const std::string& name) const;
 
-  /// Throws InputError "--size: found 'big', expected WIDTHxHEIGHT" about the last value given.
+  /// Throws InputError "--size: found 'big', expected WIDTHxHEIGHT" for the option's last value.
   [[noreturn]] void fail_value(const std::string& name, const std::string& expected) const;
-  /// Throws InputError with this message, and the place of the options' values in a scene file.
+  /// Throws InputError: `message`, and the place in a scene file that sets any of `names`.
   [[noreturn]] void fail(const std::string& message,
                          std::initializer_list<const char*> names) const;
 

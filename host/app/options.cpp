@@ -72,7 +72,7 @@ bool read_size(const std::string& text, RenderSettings& settings) {
   return kSideRange.contains(settings.width) && kSideRange.contains(settings.height);
 }
 
-/// Returns the variant with a name in variants.json or a format such as "e8p15".
+/// Returns the variant of `text`: a name in variants.json, or a format such as "e8p15".
 std::optional<Variant> parse_variant(const std::string& text) {
   for (const Variant& variant : all_variants_of_arithmetic()) {
     if (variant.name == text) return variant;
@@ -286,7 +286,7 @@ void check_core_files(const OptionTable& table, const Options& options) {
   }
 }
 
-/// Checks --samples, and channels that exist with adaptive sampling only.
+/// Throws InputError if --samples does not fit other options, or --false-colour lacks --error.
 void check_samples(const OptionTable& table, Options& options) {
   const RenderSettings& render = options.render;
   if (render.end_sample > 0) {

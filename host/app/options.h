@@ -112,29 +112,29 @@ inline constexpr Range<double> kFovRange{0x1p-1022, 180.0 - 0x1p-45,
 /// Returns "structural" or "behavioural".
 [[nodiscard]] std::string to_string(Arith arith);
 
-/// Adds the options of the engine, of ./render and ./trace.
+/// Adds the engine options, which ./render and ./trace have.
 void add_engine_options(OptionTable& table, EngineOptions& options);
-/// Adds the options of picture files, of ./render and ./merge.
+/// Adds the options of picture files, which ./render and ./merge have.
 void add_picture_options(OptionTable& table, OutputOptions& options);
-/// Adds the options of the integrator and of sampling, of ./render and the Python module.
+/// Adds the options of integrators and sampling, which ./render and the Python module have.
 void add_light_options(OptionTable& table, RenderSettings& settings);
 
 /// Throws InputError for incompatible options, and sets defaults that depend on other options.
 void check_engine_options(const OptionTable& table, EngineOptions& options);
 /// Sets the names of the pictures, by default `scene`'s name in the current folder. Throws
-/// InputError, also for --channels without an EXR.
+/// InputError for unknown endings, and for --channels without an EXR.
 void name_outputs(const OptionTable& table, const std::filesystem::path& scene,
                   OutputOptions& options);
-/// Chooses the integrator for a scene with or without an environment map, and the maximum samples
-/// of adaptive sampling. Throws InputError if the maximum is too small.
+/// Sets the default integrator and samples per pixel, which depend on the environment map and on
+/// adaptive sampling. Throws InputError if the samples are too few for adaptive sampling.
 void check_light_options(const OptionTable& table, bool has_environment, RenderSettings& settings);
 
 /// Parses the options of the scene file, then a command line without the program's name, which
 /// overrides them. Throws InputError, and Information for --help and --version.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
-/// Returns the options of a scene whose file was read: the values of `given`, overridden by
-/// `requested`. The latter are of a request to --serve and must be at kInPage. Throws InputError.
+/// Returns the options for the scene file of `scene`: the values `given`, overridden by
+/// `requested`, options at kInPage from the page of --serve. Throws InputError.
 [[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given,
                                   const std::vector<OptionValue>& requested = {});
 

@@ -46,7 +46,7 @@ struct Statistic {
   const char* meaning = nullptr;  ///< null: not printed by --verbose
 };
 
-/// Returns all statistics except options with kInStats, which to_json() inserts after "variant".
+/// Returns all statistics except options at kInStats, which to_json() inserts after "variant".
 std::vector<Statistic> statistics(const Report& report, const Options& options) {
   const RenderStats& render = report.render;
   const IntersectCounters& work = render.intersect;

@@ -21,8 +21,8 @@ struct StagedFiles {
   std::vector<std::string> legends;  ///< of the false-colour pictures
 };
 
-/// Encodes and writes all pictures. PNGs of unfinished pictures have a comment that says so. Throws
-/// InputError as AtomicFile does; then no file remains.
+/// Encodes all pictures and writes them under temporary names; the caller commits them. Unfinished
+/// PNGs have a comment. Throws InputError as AtomicFile does; then no file remains.
 [[nodiscard]] StagedFiles stage_files(const OutputOptions& options, const Film& film,
                                       const ExrMetadata& metadata, int threads = 1);
 
@@ -42,8 +42,8 @@ struct Report {
   std::vector<std::string> legends;  ///< scales of the false-colour pictures
 };
 
-/// Returns the summary of a run: four lines, more for --engine check, --error, legends, views and
-/// rounded corners; all statistics with --verbose. Ends with a newline.
+/// Returns the summary of a run: four lines, and one more for each of --engine check, --error,
+/// legend, view and rounded corners. With --verbose, adds all statistics. Ends with a newline.
 [[nodiscard]] std::string to_text(const Report& report, const Options& options);
 
 /// Returns all statistics as a JSON object, for --stats.

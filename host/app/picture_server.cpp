@@ -188,7 +188,7 @@ class PictureServer {
     std::erase_if(values, [&](const OptionValue& value) { return names.contains(value.name); });
   }
 
-  /// Returns the server's options with those of the request.
+  /// Returns the server's options, overridden by those of the request.
   [[nodiscard]] Options options_of(const Request& request) const {
     std::vector<OptionValue> given = options_.given;
     std::set<std::string> replaced{"ground"};

@@ -18,13 +18,13 @@ struct ServedScene {
 ///
 ///   GET /                    the page
 ///   GET /picture?OPTIONS     the PNG of ./render with these options; the header X-Command has the
-///                            command, X-Statistics its statistics as JSON
+///                            command line, X-Statistics the render's statistics as JSON
 ///   GET /camera?OPTIONS      eye, target, up, field of view and size as JSON; also `view` if the
 ///                            options frame the whole scene
 ///
-/// OPTIONS are options of ./render at kInPage, without dashes: engine=cpu&size=80x60. They override
-/// `options`. A closed connection cancels its picture. The reply to a bad option is one line of
-/// text with status 400. Throws InputError if the port is not available.
+/// OPTIONS are options of ./render that appear at kInPage, without dashes: engine=cpu&size=80x60.
+/// They override `options`. A closed connection cancels its picture. The reply to a bad option is
+/// one line of text with status 400. Throws InputError if the port is not available.
 void serve_pictures(const Options& options, const ServedScene& scene);
 
 }  // namespace raygate

@@ -65,9 +65,9 @@ ExrMetadata make_metadata(const Options& options, const Framing& framing, const 
   return metadata;
 }
 
-/// Reads a film to resume, with the channels that this run's outputs need. `metadata` is of this
-/// run. Throws InputError if the file cannot be read, has no sums, or shows another picture; only
-/// --spp may be larger.
+/// Reads a film to resume, with the channels that this run's outputs need. `metadata` describes
+/// this run. Throws InputError if the file cannot be read, has no sums, or shows another picture.
+/// Only --spp may be larger in this run.
 Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
   const std::string name = options.resume.string();
   FilmFile file = read_film(options.resume);
@@ -104,7 +104,7 @@ Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
 }
 
 /// Renders with a progress line. Saves the unfinished picture periodically. After a signal, saves
-/// it unless no pixel shows anything, and throws Interrupted.
+/// it unless all pixels are misses, and throws Interrupted.
 Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata metadata,
                       const IntersectorFactory& make_intersector, RenderStats& stats) {
   ProgressLine line(!options.quiet);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
   throw InputError(path.string() + ": cannot write: " + std::generic_category().message(error));
 }
 
-/// Returns the absolute path of `name` with all symbolic links resolved, also to missing targets.
+/// Returns the absolute path of `name` with all symbolic links resolved, even to missing files.
 fs::path target_of(const fs::path& name, std::error_code& error) {
   constexpr int kMostLinks = 40;  // the limit of Linux
   fs::path end = fs::absolute(name, error);

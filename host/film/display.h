@@ -33,12 +33,12 @@ struct DisplayOptions {
   Tone tone = Tone::kClip;
 };
 
-/// Returns display-linear light for one channel of exposed light; in [0, 1] for kFilmic. Returns
-/// NaN for NaN. The filmic curve is K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
+/// Returns display-linear light for one channel of light after exposure; in [0, 1] for kFilmic.
+/// Returns NaN for NaN. The filmic curve is K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
 [[nodiscard]] float tone_map(float light, Tone tone);
 
-/// Returns the luminance after `exposure` stops in steps of an 8-bit sRGB display: 255 is white.
-/// Not clamped, because values above white can be visible at another exposure.
+/// Returns the luminance of `light` after `exposure` stops as a fractional 8-bit sRGB code; 255 is
+/// white. Not clamped, because values above white can be visible at another exposure.
 [[nodiscard]] float display_steps(const glm::vec3& light, double exposure);
 
 /// Returns sRGB codes of the film over black. Each code is the nearest to the exact value.

@@ -40,8 +40,8 @@ Imf::PixelType type_of(const Channel& channel) {
   return channel.type == Channel::Type::kUint ? Imf::UINT : Imf::FLOAT;
 }
 
-/// Returns the slice of `window`, stored row by row, for the library. Slices start at pixel (0, 0),
-/// which may be outside of the window.
+/// Describes an array with the pixels of `window`, row by row, to the library. The slice's base is
+/// the address of pixel (0, 0), which may be outside of the window and the array.
 Imf::Slice slice_of(Imf::PixelType type, const void* first, std::size_t stride,
                     const PixelRect& window) {
   const std::size_t row = stride * static_cast<std::size_t>(window.width());
@@ -62,7 +62,7 @@ Imf::FrameBuffer slices_of(const Film& film) {
   return slices;
 }
 
-/// Returns the header of a file with these rows of the film.
+/// Returns the header of a file with the rows `window` of the film.
 Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const PixelRect& window) {
   Imf::Header header(Imath::Box2i({0, 0}, {film.width - 1, film.height - 1}),
                      Imath::Box2i({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}));
@@ -203,7 +203,7 @@ ExrMetadata metadata_of(const Imf::Header& header) {
   return metadata;
 }
 
-/// Returns whether the file in `bytes` contains these rows of `film`, bit for bit.
+/// Returns whether the file in `bytes` contains the rows `window` of `film`, bit for bit.
 bool holds_rows(const std::string& bytes, const Film& film, const PixelRect& window) {
   constexpr int kRows = 64;  // per read
   Imf::StdISStream stream;
@@ -234,7 +234,7 @@ bool holds_rows(const std::string& bytes, const Film& film, const PixelRect& win
   return true;
 }
 
-/// Encodes these rows of the film as a file; without `has_pixels`, only up to the first row.
+/// Encodes the rows `window` of the film as a file; without `has_pixels`, only what precedes them.
 std::string encode_rows(const Film& film, const ExrMetadata& metadata, const PixelRect& window,
                         bool has_pixels = true) {
   try {

@@ -29,9 +29,9 @@ inline constexpr const char *kPartialAttribute = "partial",
                             *kPartial = "not finished when it was saved";
 
 /// Returns an OpenEXR scan-line file of `film`, ZIP compressed (lossless), with the channels of
-/// channels_of(). The display window is the frame, the data window the film's. Equal arguments give
-/// equal bytes, for any number of threads. The bytes are read back and checked, because the library
-/// does not report all failures to allocate memory. Throws std::bad_alloc for these.
+/// channels_of(). The display window is the frame; the data window is film.window. Equal arguments
+/// give equal bytes, for any number of threads. The bytes are read back and checked, because the
+/// library does not report all failures to allocate memory. Throws std::bad_alloc for these.
 [[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata,
                                      int threads = 1);
 

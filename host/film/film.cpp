@@ -81,8 +81,8 @@ void copy_region(const Film& from, const PixelRect& rect, Film& to) {
 
 namespace {
 
-/// The minimum four-term window (Harris 1978, "On the use of windows for harmonic analysis") and a
-/// table of its inverse cumulative distribution.
+/// The four-term Blackman-Harris window with minimum sidelobes (Harris 1978, "On the use of windows
+/// for harmonic analysis") and a table of its inverse cumulative distribution.
 class BlackmanHarris {
  public:
   static constexpr double kRadius = 1.5;
@@ -108,7 +108,7 @@ class BlackmanHarris {
     return place(step + std::clamp(within, 0.0, 1.0));
   }
 
-  /// Returns the probability density at a position; constant within each step.
+  /// Returns the probability density at offset `at`; constant within each step of the table.
   [[nodiscard]] double density(double at) const {
     const double step = (at / kRadius + 1.0) * (0.5 * kSteps);
     if (!(step >= 0.0 && step < kSteps)) return 0.0;

@@ -206,13 +206,13 @@ struct Channel {
   std::size_t stride;  ///< bytes from one pixel to the next; rows follow without a gap
 };
 
-/// Returns the channels of all arrays; sums only if `keeps_sums` (`samples` also with `error`).
+/// Returns the channels for files: no sums unless `keeps_sums`, but `samples` if there is `error`.
 [[nodiscard]] std::vector<Channel> channels_of(const Film& film);
 
 /// Returns the channel's value at array index `index`; exact.
 [[nodiscard]] double value_at(const Channel& channel, std::size_t index);
 
-/// Copies the pixels of `rect`, which is within both windows, to a film with the same arrays.
+/// Copies the pixels of `rect`, within both films' windows, to a film with the same arrays.
 void copy_region(const Film& from, const PixelRect& rect, Film& to);
 
 /// Filters around a pixel's centre; all are non-negative and separable.

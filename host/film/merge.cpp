@@ -37,8 +37,8 @@ void add(std::array<ExactAccumulator, N>& sums, const std::array<ExactAccumulato
 }
 void add(std::uint32_t& count, std::uint32_t more) { add_count(count, more); }
 
-/// Adds sums and counts of pixel `k` of `part` to pixel `i`; copies all fields if these are the
-/// pixel's first samples. Does not update the means.
+/// Adds sums and counts of pixel `k` of `part` to pixel `i` of `film`; copies all fields if these
+/// are the pixel's first samples. Does not update the means.
 void add_pixel(Film& film, std::size_t i, const Film& part, std::size_t k, bool is_first) {
   if (is_first) {
     for_each_field(

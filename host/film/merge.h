@@ -20,15 +20,15 @@ struct SampleRange {
 [[nodiscard]] SampleRange parse_sample_range(const std::string& text);
 [[nodiscard]] std::string to_string(const SampleRange& range);
 
-/// Attribute of a file that has only some of the samples of "spp".
+/// Attribute with the range "A:B" of a file's samples, if the file lacks some of 0 to "spp".
 inline constexpr const char* kSamplesAttribute = "samples";
 
 /// Attribute with the digest of the scene (digest_of).
 inline constexpr const char* kSceneAttribute = "sceneDigest";
 
-/// Returns the samples of a film file: kSamplesAttribute, or all of "spp".
+/// Returns the samples of a film file: kSamplesAttribute or, without it, 0 to "spp".
 [[nodiscard]] SampleRange samples_of(const ExrMetadata& metadata);
-/// Sets kSamplesAttribute, or removes it if `range` is all of "spp".
+/// Sets kSamplesAttribute, or removes it if `range` is 0 to "spp".
 void set_samples(ExrMetadata& metadata, const SampleRange& range);
 
 /// Returns why a file is not part of a picture of `width` x `height` pixels with the metadata
@@ -41,8 +41,8 @@ void set_samples(ExrMetadata& metadata, const SampleRange& range);
 using NamedFilm = std::pair<std::string, FilmFile>;
 
 /// Merges parts of a picture: ranges of samples, crops or both. The result has the bits of a single
-/// render, and keeps its sums if samples are missing. Together, the parts must have the same
-/// consecutive samples of all pixels of a rectangle. Throws InputError, one line, for parts of
+/// render, and keeps its sums if samples are missing. Together, the parts must cover a rectangle,
+/// in which all pixels have the same consecutive samples. Throws InputError, one line, for parts of
 /// different pictures, unfinished parts, gaps and overlaps.
 [[nodiscard]] FilmFile merge(std::vector<NamedFilm> parts);
 

@@ -39,8 +39,8 @@ inline double quantile(std::vector<double> values, double part) {
   return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
 }
 
-/// Returns a tester with the Verilated unit of the variant's parameters, or null if no such unit
-/// was built. Not thread-safe.
+/// Returns a tester with the unit Verilated with the variant's parameters, or null if this build
+/// has no such unit. Not thread-safe.
 [[nodiscard]] std::unique_ptr<HitTester> make_rtl_variant_tester(const Variant& variant);
 
 /// Declares a command and its options. Parsing a command's name runs the command; it prints rows.

@@ -1,5 +1,4 @@
-// Pictures in every variant of arithmetic, and the wrong decisions of the variant's hit tests on
-// camera rays.
+// Pictures in every variant of arithmetic, and wrong decisions of its hit tests on camera rays.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <bit>
@@ -111,11 +110,11 @@ Row summary_of(const std::vector<double>& errors) {
 /// Compares the hits of rays through all pixel centres, found by `tester`, which uses the
 /// arithmetic of `variant`, with exact arithmetic on the same triangles. Columns:
 ///
-///   tests                     (ray, polygon) pairs tested by the traversal
+///   tests                     (ray, triangle) pairs tested by the traversal
 ///   doubts                    tests resolved by exact arithmetic: never wrong
 ///   wrong_hits, wrong_misses  decisions that differ from exact arithmetic
-///   rays, wrong_rays          all rays, and those whose nearest polygon is wrong
-///   hits                      hits of the other rays; errors are computed over these
+///   rays, wrong_rays          all rays, and those whose nearest triangle is wrong
+///   hits                      hits of rays that are not wrong; errors are computed over these
 ///   t_ulp, point_ulp          errors of t and of P's worst coordinate in float32 ulps: median
 ///                             (p50), 99th percentile, largest; 0 without hits. No t_ulp for
 ///                             user-supplied modules, whose t is the reference model's
@@ -178,7 +177,7 @@ class Pictures {
 
   /// Renders by a variant's reference model, or by its hardware if it has user-supplied modules,
   /// which have no model. Audits all tests of camera rays, writes STEM-VARIANT.png and compares it
-  /// with the first variant's.
+  /// with the first variant's picture.
   Row picture(const Variant& variant) {
     const bool by_hardware = !variant.brought.empty();
     Film film;

@@ -7,7 +7,7 @@
 namespace raygate {
 namespace {
 
-/// Writes the cumulative distribution of `weights`, or a uniform one if all are 0.
+/// Writes the cumulative distribution of `weights` to `cdf`, or a uniform one if all are 0.
 void put_cdf(const std::vector<double>& weights, float* cdf) {
   double sum = 0.0;
   for (const double weight : weights) sum += weight;

@@ -73,12 +73,12 @@ struct PathLanes {
   /// Return specular_history after reflection in a mirror and after refraction by glass.
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
-  /// Returns whether `mask` contains the history. Histories in masks are below kSpecularHistories.
+  /// Returns whether bit `history` of `mask` is set. Histories are below kSpecularHistories.
   [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& mask,
                                                     const WordOf<T>& history) {
     return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
   }
-  /// Stores the words of the path states.
+  /// Stores the 16 words of PathState, one path per lane.
   RAYGATE_INLINE void put(T* word) const {
     for_each_word(*this, [&](const auto& member) RAYGATE_BODY { *word++ = float_of(member); });
   }
@@ -110,7 +110,7 @@ struct HitBlock {
   std::vector<LightSample> light_samples;            ///< `light_samples_per_hit` for each hit
   std::vector<ScatteredRay> scattered;               ///< `scattered_per_hit` for each hit
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
-  /// By position; null if the hit is not the first surface of its path. Empty if all are null.
+  /// FirstSurface, by position; null unless the hit is its path's first. Empty if all are null.
   std::vector<FirstSurface*> first_surfaces;
 
   [[nodiscard]] const PathState& state(std::size_t i) const { return batch->states[begin + i]; }
@@ -182,8 +182,9 @@ struct Hits {
     if (!hits.first_surfaces.empty()) show_first_surfaces();
   }
 
-  /// Returns the cosine of a unit direction to the shading normal; 0 if light from there is not
-  /// scattered: behind the triangle; for rough glass, on different sides by normal and flat_normal.
+  /// Returns the cosine (rough glass: its magnitude) of a unit direction to the shading normal. 0
+  /// if its light is not scattered: from behind the triangle; for rough glass, if it is on one side
+  /// by the shading normal and on the other by flat_normal.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
@@ -206,7 +207,7 @@ struct Hits {
     return choose(are_supersampled(), zero<T>(), bsdf.emission);
   }
 
-  /// Returns a random point of the path; each purpose has its own stream of random numbers.
+  /// Returns a random point of the unit square for the path. Each purpose has its own stream.
   [[nodiscard]] RAYGATE_INLINE SquarePoint<T> random(std::uint32_t purpose) const {
     return random_point<T>(path.index, path.stream, purpose);
   }
@@ -336,7 +337,7 @@ ShadeFunction shade_light_path;
 
 /// Shades hits on specular paths from the camera whose histories are in PathState::supersampled:
 /// adds emission, and spawns reflected and refracted rays. PathState::sample is a multiple of
-/// kSpecularHistories plus the history, which separates radiance by history.
+/// kSpecularHistories plus the history, so each history has its own radiance.
 ShadeFunction shade_emitters;
 
 /// Returns a finite number: infinity becomes the largest float, NaN becomes 0.
@@ -367,7 +368,7 @@ struct IncidentLight {
   WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
 
   IncidentLight() = default;
-  /// Computes the fields of light from a point that depend only on the point's position.
+  /// Sets those fields of light from a point that depend only on its position.
   RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
       : target(position) {
     constexpr float kNear = 1e-30f;  // least distance_squared with light
@@ -376,7 +377,7 @@ struct IncidentLight {
     direction = way * (1.0f / root(distance_squared));
     cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
   }
-  /// Computes the fields of a distant light that depend only on `towards`, a unit vector.
+  /// Sets those fields of a distant light that depend only on the unit vector `towards` it.
   RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
       : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
 
@@ -398,8 +399,8 @@ struct IncidentLight {
   }
 };
 
-/// Returns the light from the point lights `own` with these indices, one per lane. A light with a
-/// radius is sampled at a random point of its sphere, or at the centre if `in_middle`.
+/// Returns the light from the point lights `own`, one per lane; `indices` are theirs. A light with
+/// a radius is sampled at a random point of its sphere, or at the centre if `in_middle`.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
                                             const Lights::Light* const (&own)[kLanesOf<T>],

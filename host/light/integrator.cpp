@@ -15,7 +15,7 @@ constexpr std::size_t kMostHits = 2048;             // per block; its lists fit 
 constexpr std::size_t kFacesAhead = 12;             // prefetch distance
 constexpr std::size_t kMostLightSamples = 1 << 16;  // per block: 3 MB
 
-/// Shows diffuse colour times the cosine of the view, plus emission. Rays continue through holes.
+/// Shows diffuse colour times the view's cosine, plus emission. Rays continue through masks' holes.
 void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
                    std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, []<class T>(Hits<T>& hits) RAYGATE_BODY {
@@ -31,8 +31,8 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
   });
 }
 
-/// Returns ShadingScene::max_depth. kEmitters and kPath shade hits one level deeper than this.
-/// Other integrators do not, so kEmitters has a limit one lower when it accompanies them.
+/// Returns ShadingScene::max_depth of `kind`. kPath and kEmitters shade one level deeper than that.
+/// kEmitters must stop with the user's integrator, so its limit is one lower unless that is kPath.
 int last_depth(IntegratorKind kind, const IntegratorSettings& settings) {
   if (kind == IntegratorKind::kPrimary) return 0;
   const int depth = settings.integrator == IntegratorKind::kPrimary ? 0 : settings.depth();

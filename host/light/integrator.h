@@ -14,7 +14,7 @@
 namespace raygate {
 
 /// Shades the hits of batches. Hits of one HitKind are shaded together. Not thread-safe. The order
-/// of results depends only on the order of the batch, and a sample's radiance only on its rays.
+/// of results depends only on the batch's order, and a sample's radiance only on its own rays.
 class Integrator {
  public:
   /// The references must outlive this object. `kind` may differ from `settings.integrator` (kLight,
@@ -31,7 +31,7 @@ class Integrator {
   void shade(const RayBatch& batch, std::span<const NearestHit> hits, std::size_t begin,
              std::size_t end, ShadingOutput& output);
 
-  /// Returns the radiance along rays that miss all geometry.
+  /// Returns the constant radiance along rays that miss all geometry, unless sees_environment().
   [[nodiscard]] glm::vec3 background() const {
     return sees_background() ? shading_.lights.background() : glm::vec3(0.0f);
   }

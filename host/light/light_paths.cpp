@@ -31,8 +31,8 @@ Triple<float> narrow(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// Returns a unit vector at this angle from the unit vector `axis`, or with cosine 0 a vector
-/// perpendicular to `axis` with length `sine`.
+/// Returns the unit vector at the angle with this cosine and sine to the unit vector `axis`;
+/// `turns` is the azimuth in turns. With cosine 0, `sine` can be any length of the result.
 glm::dvec3 around(const glm::dvec3& axis, double cosine, double sine, double turns) {
   const Frame<float> frame(narrow(axis));
   const SineCosine<double> turn = sine_cosine(turns);
@@ -138,7 +138,7 @@ double LightPaths::solid_angle(const glm::dvec3& point) const {
   return sum;
 }
 
-/// Returns the number of spheres that a ray meets.
+/// Returns the number of spheres that a ray, or with `both_ways` a line, meets.
 double LightPaths::meetings(const glm::dvec3& point, const glm::dvec3& direction,
                             bool both_ways) const {
   double count = 0.0;
@@ -162,7 +162,7 @@ float LightPaths::environment_density(const glm::vec3& point, const glm::vec3& t
                       discs_);
 }
 
-/// Chooses a sphere for u in [0, 1) with a probability proportional to its size.
+/// Chooses a sphere for u in [0, 1) with a probability proportional to size(sphere).
 template <class Size>
 const LightPaths::Ball& LightPaths::choose_ball(double u, const Size& size) const {
   double left = 0.0;
@@ -175,7 +175,7 @@ const LightPaths::Ball& LightPaths::choose_ball(double u, const Size& size) cons
   return balls_.back();
 }
 
-/// Samples a direction, uniformly in the solid angles of all spheres.
+/// Samples a direction from `point`, uniformly in the solid angles of all spheres.
 glm::dvec3 LightPaths::direction_from(const glm::dvec3& point, double choice,
                                       const SquarePoint<float>& u) const {
   const Ball& ball = choose_ball(choice, [&](const Ball& each) { return each.solid_angle(point); });

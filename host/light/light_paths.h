@@ -38,7 +38,7 @@ struct FrameView {
 /// only if its first surface is a mirror or glass. Lights are therefore chosen by the flux that
 /// they send to the bounding spheres of the scene's mirrors and glass. Rays from a light at finite
 /// distance are uniform in the solid angles of the spheres. Rays from a distant light are uniform
-/// over the spheres' discs. Lengths are in scene units, densities per square unit of Lights.
+/// over the spheres' discs. Lengths are in scene units, densities per squared unit of Lights.
 ///
 /// A path that both camera paths and light paths can find is weighted by multiple importance
 /// sampling with the power heuristic (Veach, "Robust Monte Carlo methods for light transport
@@ -66,11 +66,11 @@ class LightPaths {
   [[nodiscard]] std::optional<Start> start(std::uint64_t number, std::uint64_t seed) const;
 
   /// Returns the density of light paths that start at `point` of a source in this unit direction,
-  /// per area and solid angle. Counts the light paths of one sample per pixel.
+  /// per area and solid angle: the sum for all count() paths.
   [[nodiscard]] float density(std::uint32_t source, const glm::vec3& point,
                               const glm::vec3& direction) const;
   /// Returns the density of light paths from the environment that go through `point` against the
-  /// unit vector `towards`, per area perpendicular to `towards`. Counts paths as density() does.
+  /// unit vector `towards`, per area perpendicular to `towards`: the sum for all count() paths.
   [[nodiscard]] float environment_density(const glm::vec3& point, const glm::vec3& towards) const;
 
   /// Returns PathState::light_over_camera_pdf of camera rays with these unit directions, without

@@ -10,7 +10,7 @@
 namespace raygate {
 namespace {
 
-/// Returns the axis, flipped to a common side for sources that emit to both sides.
+/// Returns the axis; if both sides emit alike, flipped so that its largest component is positive.
 glm::dvec3 on_one_side(const LightBounds& source) {
   if (source.back < 1.0) return source.axis;
   const glm::dvec3 size = glm::abs(source.axis);
@@ -57,7 +57,7 @@ class LightTree::Builder {
         tree_(tree),
         most_power_(std::ranges::max(sources, {}, &LightBounds::power).power) {}
 
-  /// Adds the nodes of a group, and returns the index of the root.
+  /// Adds the nodes of a group below child `place` of `parent`; returns the index of the root.
   std::uint32_t add(Group group, std::uint32_t parent, std::uint32_t place) {
     const auto number = static_cast<std::uint32_t>(tree_.nodes_.size());
     tree_.nodes_.emplace_back();

@@ -20,7 +20,7 @@ struct LightBounds {
   glm::dvec3 axis{0.0, 0.0, 1.0};
   double spread = -1.0, reach = 1.0;
   double back = 0.0;  ///< fraction emitted against the axis
-  /// A distant light: `middle` is the direction towards it, or 0 for all directions.
+  /// Whether the light is distant: `middle` is the direction towards it, or 0 for all directions.
   bool is_far = false;
   /// Irradiance on a facing surface at distance 1; for a distant light, at any distance. A source
   /// without power is never chosen.

@@ -17,8 +17,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the ambient radiance: the reflected flux F r / (1 - r) over pi times the total area,
-/// where F is the lights' flux from one side and r the mean reflectance.
+/// Returns the ambient radiance F r / ((1 - r) pi A). F is the flux of the area lights, counting
+/// one side of each; r is the mean diffuse reflectance, and A the area, of all faces.
 glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lights) {
   glm::dvec3 flux(0.0), reflecting(0.0);
   double area = 0.0;
@@ -67,7 +67,7 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
   return std::nullopt;
 }
 
-/// Weight of the inner side of a closed light: small, but positive.
+/// LightBounds::back of closed lights: a small, but positive fraction for the inner side.
 constexpr double kInnerSide = 1.0 / 16.0;
 
 /// Returns bounds with lengths in units of `unit`.
@@ -82,9 +82,9 @@ LightBounds light_bounds(const PointLight& light, double unit) {
   return source;
 }
 
-/// Returns whether emissive triangles light the scene. Without `is_preview` an untextured one
-/// suffices, as it is meant as a light. Otherwise radiance and area must be large, unlike those of
-/// glowing labels and screens. `size` is the scene's diagonal.
+/// Returns whether emissive triangles light the scene. Without `is_preview`, one triangle without
+/// an emission texture suffices. Otherwise, the sum of radiance times area must be large, unlike
+/// that of glowing labels and screens. `size` is the scene's diagonal.
 bool is_lit_by_emitters(const Scene& scene, double size, bool is_preview) {
   // Thresholds of radiance * area / size^2, relative to the main light: 1/100, or about 1/6 for
   // emission with a texture, which is meant to be looked at.

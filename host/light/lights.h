@@ -26,10 +26,10 @@ struct CameraLights {
 };
 
 /// Returns lights for a scene that has none: no lights, no background, and no emission except by
-/// textures that hardly light anything. These are a dim sky and a light with soft shadows to the
-/// upper left of the camera, or at the camera if the camera is inside the scene. Returns nullopt
-/// for other scenes. With `is_preview`, for cameras not chosen by the user, there is a second,
-/// weaker light from the right, and scenes with only a background or dim emitters get lights, too.
+/// textures that hardly light anything. The default lights are a dim sky and a light with soft
+/// shadows to the upper left of the camera, or at a camera inside the scene. Returns nullopt for
+/// other scenes. With `is_preview`, for cameras not chosen by the user, there is a second, weaker
+/// light from the right, and scenes with only a background or dim emitters get lights, too.
 [[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
                                                          bool is_preview = false);
 
@@ -119,7 +119,7 @@ class Lights {
   struct Light {
     Kind kind = Kind::kPoint;
     bool is_spot = false;
-    /// Point light: intensity, in square units. Area light: radiance. Directional light:
+    /// Point light: intensity over the squared unit. Area light: radiance. Directional light:
     /// irradiance. Environment: unused.
     glm::vec3 emission{0.0f};
     glm::vec3 position{0.0f};   ///< of a point light, or the direction towards a directional light

@@ -166,7 +166,7 @@ struct MetallicRoughnessLobes {
     return has_rough_glass() ? pdf * mirrored_chance(at_most(pair.cos_half, 1.0f)) : pdf;
   }
 
-  /// Returns the unmasked fraction of the light that a sampled facet reflects to `way`.
+  /// Returns the fraction of light reflected by a sampled facet to `way` that is not masked.
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const Triple<T>& way) const {
     const T cosine = dot(ggx.normal, way);
     return choose(cosine > 0.0f, ggx.g2_over_g1(view_cosine, cosine), T{});
@@ -182,7 +182,7 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
 
  private:
-  /// Returns the albedos, at a cosine, of facets with reflectance 1 and with Schlick's weight.
+  /// Returns facets' albedos at a cosine: `first` for reflectance 1, `second` for Schlick's weight.
   [[nodiscard]] RAYGATE_INLINE Shares shares_at(const T& cosine) const {
     if (!is_rough()) return {spread<T>(1.0f), schlick_weight(cosine)};
     return albedo->at(cosine, alpha);

@@ -40,15 +40,15 @@ struct LobeProbabilities {
   }
 };
 
-/// Returns the cosine of a direction with the surface, clamped, as used in ratios of densities.
+/// Returns the magnitude of a direction's cosine to the geometric normal, at least kLeastCosine.
 template <class T>
 RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
   return at_least(absolute(dot(hits.surface.flat_normal, direction)), kLeastCosine);
 }
 
 /// Computes PathState::light_over_camera_pdf (see LightPaths) of the rays spawned at a hit. Light
-/// paths carry flux: their throughput is a product of adjoint BSDFs, and of the cosine at the
-/// opposite end of each edge ("Robust Monte Carlo methods", 5.3).
+/// paths carry flux: their throughput is a product of adjoint BSDFs and, for each edge, the cosine
+/// at its end nearer the light ("Robust Monte Carlo methods", 5.3).
 template <bool kFromLight, class T>
 struct ReversePdf {
   T arrived;  ///< PathState::light_over_camera_pdf at the hit
@@ -67,7 +67,7 @@ struct ReversePdf {
     arrived = ratio / in;
   }
 
-  /// Updates the ray after diffuse or glossy reflection.
+  /// Updates the path state of `next` after diffuse or glossy reflection.
   RAYGATE_INLINE void scatter(const Hits<T>& hits, const Triple<T>& throughput,
                               ScatteredRays<T>& next) const {
     const auto seen = hits.seen_from(next.direction);
@@ -83,8 +83,8 @@ struct ReversePdf {
     next.path.throughput = choose(largest(next.path.throughput) > 0.0f, bounded(flux), zero<T>());
   }
 
-  /// Updates the ray after a mirror or refraction, where `is_specular`; `eta` is 1 for mirrors.
-  /// Where the normal is tilted there is no reverse path.
+  /// Updates the path state of `next` after a mirror or refraction, where `is_specular`; `eta` is 1
+  /// for mirrors. Where the normal is tilted, there is no reverse path.
   RAYGATE_INLINE void mirror(const Hits<T>& hits, const MaskOf<T>& is_specular, const T& eta,
                              ScatteredRays<T>& next) const {
     const T out = edge_cosine(hits, next.direction);

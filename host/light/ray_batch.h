@@ -52,7 +52,7 @@ struct RayBatch {
 /// The first surface on a camera ray; masked-out holes do not count.
 struct FirstSurface {
   std::uint32_t primitive = NearestHit::kNone;
-  glm::vec3 origin{0.0f};  ///< of the ray that meets it; in a pixel's first sample
+  glm::vec3 origin{0.0f};  ///< of the ray that meets it; only in a pixel's first sample
   glm::vec3 point{0.0f};   ///< relative to `origin`
   glm::vec3 normal{0.0f}, albedo{0.0f};
 };

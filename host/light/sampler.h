@@ -65,7 +65,7 @@ struct SquarePoint {
 
 /// Returns point `index` of the stream `key`: the first two Sobol dimensions, a (0,2)-sequence. Of
 /// 2^k successive points from a multiple of 2^k on, each elementary interval of area 2^-k contains
-/// one. Each stream has its own Owen scrambling of both coordinates and of the order ("Practical
+/// one. Each stream has its own Owen scrambling of both coordinates and of the index ("Practical
 /// Hash-based Owen Scrambling", Burley 2020, with the permutation of Laine and Karras 2011).
 template <class T>
 RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T>& key) {
@@ -76,13 +76,13 @@ RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T
   return {unit_interval(reversed_bits<Word>(x)), unit_interval(reversed_bits<Word>(y))};
 }
 
-/// Returns the key of a pixel's streams, for the image's seed and coordinates in the whole frame.
+/// Returns the key of a pixel's streams, for the image's seed and the pixel's place in the frame.
 [[nodiscard]] inline std::uint32_t pixel_key(std::uint64_t seed, std::uint32_t x, std::uint32_t y) {
   return hash(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
               hash(x, y));
 }
 
-/// Returns point `index` of one of the streams of a key.
+/// Returns point `index` of stream `stream` of `key`.
 template <class T>
 RAYGATE_INLINE SquarePoint<T> random_point(const WordOf<T>& index, const WordOf<T>& key,
                                            std::uint32_t stream) {

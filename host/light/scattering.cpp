@@ -9,8 +9,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the single-scattering albedos of facets around +z for a direction: of mirrors if `index`
-/// is 0, otherwise of glass from both sides.
+/// Returns an entry of FacetAlbedo for a direction with this cosine to the normal: of of_mirrors()
+/// if `index` is 0, otherwise of of_glass(index).
 template <class T>
 RAYGATE_INLINE FacetAlbedo::Shares<T> leaving(const T& cosine, float alpha, float index) {
   const Ggx<T> ggx({T{}, T{}, spread<T>(1.0f)}, spread<T>(alpha));

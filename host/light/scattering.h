@@ -42,8 +42,8 @@ RAYGATE_INLINE Triple<T> reflect(const Triple<T>& view, const Triple<T>& normal)
 }
 
 /// The direction of light that travels along -view and is refracted by Snell's law at an interface
-/// with the unit normal `normal`, which is on the side of `view`. `eta` is as above. For total
-/// reflection, `exists` is not set.
+/// with the unit normal `normal`, which is on the side of `view`. `eta` is as in
+/// transmitted_cosine_squared(). For total reflection, `exists` is not set.
 template <class T>
 struct Refraction {
   Triple<T> direction;
@@ -92,13 +92,13 @@ struct Ggx {
     return root(squared + (1.0f - squared) * cosine * cosine);
   }
 
-  /// Returns G2 / (4 a b) for cosines a, b. The BRDF is G2 / (4 a b) times D and the reflectance.
+  /// Returns G2 / (4 a b) for cosines a, b. The BRDF is this times D and the facets' reflectance.
   [[nodiscard]] RAYGATE_INLINE T visibility(const T& a, const T& b) const {
     return 0.5f / (a * stretched(b) + b * stretched(a));
   }
 
-  /// Returns the probability density per steradian with which reflection at a facet of sample()
-  /// generates the other direction of a pair.
+  /// Returns the pdf, per steradian, of directions that are reflected at a facet from sample().
+  /// `view`: cosine of the view to the normal; `d`: Pair::d of view and direction.
   [[nodiscard]] RAYGATE_INLINE T reflection_pdf(const T& view, const T& d) const {
     return d * 0.5f / (view + stretched(view));
   }

@@ -97,7 +97,7 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   }
 }
 
-/// Traces all segments. Searches may end at hits before the fraction `enough` of the distance.
+/// Traces all segments. A search may end at any hit within the fraction `enough` of the distance.
 void ShadowRays::trace(std::span<const ShadowRay> rays, bool from_light, float enough) {
   const std::size_t count = segments_.size();
   batch_.resize(count);

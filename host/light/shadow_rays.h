@@ -38,7 +38,7 @@ struct ShadowRay : LightSample {
 /// and ignore the surface's own triangle. Rounding the direction moves the end by about one float
 /// step. A hit in the last 2^-10 of the distance is therefore not conclusive, and the ray is traced
 /// again from the surface. Rays of other lights start at the surface, and so do all rays if there
-/// are more than 64 point lights, of which few would have several rays. Rays to area lights end at
+/// are more than 64 point lights: few of these would have several rays. Rays to area lights end at
 /// 1 - 2^-16 of the distance, and the light's own triangle is ignored. Surfaces that transmit light
 /// without refraction attenuate it.
 class ShadowRays {

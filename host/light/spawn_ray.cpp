@@ -138,8 +138,8 @@ class NeighborClearanceSearch {
     return choose(size > 0.0, Vectors3{v.x / size, v.y / size, v.z / size}, zero<DoubleQuad>());
   }
 
-  /// Returns c with respect to each single triangle in the mask, or any value of at least length_.
-  /// `exact`: the triangles' corners, if `corners` are rounded; otherwise null.
+  /// Returns, for each triangle in `mask`, the largest c found with respect to it alone; stops when
+  /// all are at least length_. `exact`: the triangles' corners if `corners` are rounded, or null.
   template <Vectors kCode>
   [[nodiscard]] RAYGATE_INLINE DoubleQuad clearances(const float* corners, const Corners* exact,
                                                      std::uint32_t count, LaneMask mask) const {
@@ -188,7 +188,8 @@ class NeighborClearanceSearch {
     return best;
   }
 
-  /// Returns sum g_i ("Why c is a bound"): 0 if one is negative, infinity if all reach reach_.
+  /// Returns the sum of the gaps g_i along `axis` (step 2 of "Why c is a bound"): 0 if a g_i is
+  /// below -slack_, infinity if all are at least reach_.
   [[nodiscard]] RAYGATE_INLINE DoubleQuad apart(const Vectors3& axis,
                                                 const Vectors3 (&y)[3]) const {
     const DoubleQuad highest = maximum(maximum(dot(axis, y[0]), dot(axis, y[1])), dot(axis, y[2]));
@@ -299,8 +300,8 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 // Why no triangle is near
 //
 // Let p be candidate 0, w the exact X's least weight, c the triangle's clearance, s = |p - A|_1.
-//   1. Only triangles within 8 u of X can invalidate p: on each axis, they are within 5 u of p, in
-//      the box of p and the computed X enlarged by 2 u on every side. spawn_reach exceeds 16 u.
+//   1. Only triangles in the box of p and the computed X, enlarged by 2 u, can invalidate p. The
+//      box is within 5 u of p on each axis and within 8 u of X. spawn_reach exceeds 16 u.
 //   2. Other triangles are at least c w - margin away from X, unless they are farther than
 //      spawn_reach, overlaps, or in the triangle's plane (see NeighborClearance).
 //   3. c times a weight is computed in float as G . (p - A). G is c times the weight's gradient. G
@@ -395,7 +396,7 @@ RAYGATE_INLINE Triple<DoubleQuad> widened(const Triple<FloatQuad>& x) {
   return {widen<kCode>(x.x), widen<kCode>(x.y), widen<kCode>(x.z)};
 }
 
-/// Returns the distance from non-negative floats to the next ones.
+/// Returns the distance from non-negative floats to the next larger ones.
 RAYGATE_INLINE FloatQuad step_of(const FloatQuad& x) { return float_of(bits_in(x) + 1) - x; }
 
 /// Sets `point` to candidate 0 of each hit, on the incident (`way` is -1) or the transmitted side

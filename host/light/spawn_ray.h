@@ -74,7 +74,7 @@ class NeighborClearances {
         known_[primitive].clearance.load(std::memory_order_acquire);
     return clearance != nullptr ? *clearance : find(primitive);
   }
-  /// Prefetch the clearance of a primitive for a later call: prefetch(), then prefetch_again().
+  /// Prefetch the clearance of a primitive for of(): prefetch() early, prefetch_again() later.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const {
     if (!bvh_.is_instanced(primitive)) __builtin_prefetch(&known_[primitive]);
   }
@@ -141,8 +141,8 @@ struct SpawnOrigin {
 /// float step (ulp) of X's largest coordinate. If no other triangle is within 4 u of X, O' is
 /// within 1.5 u (3 u next to a power of two) of the computed X on each axis (proof in
 /// spawn_ray.cpp). In narrower corners, candidates for O' are farther away, by powers of two times
-/// u, along the normal or the ray. The last is the ray's origin, so a convex room always has an O'
-/// for kIncident. Corners narrower than the precision of float may have no O'; paths end there.
+/// u, along the normal or the ray. The last one is the ray's origin, so a convex room always has an
+/// O' for kIncident. Corners narrower than the precision of float may have no O'; paths end there.
 class RaySpawner {
  public:
   /// `clearances` must outlive this object.

@@ -118,7 +118,7 @@ Texts texts_of(const std::vector<Element>& elements) {
   return list;
 }
 
-/// Rows of a structured array.
+/// Rows of a structured array, as bytes.
 using Bytes = nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>>;
 Bytes bytes_of(const std::shared_ptr<const void>& owner, const void* data, std::size_t size) {
   return Bytes(array_of<std::uint8_t>(owner, data, {size}));
@@ -343,8 +343,8 @@ using FloatWords = nb::ndarray<const std::uint32_t, nb::shape<-1>, nb::device::c
 
 constexpr std::size_t kOperations = 1 << 12;  // between two checkpoints
 
-/// Returns a FloatResult for each pair of words, as bytes. Both columns have the same length, and
-/// all words fit the format; float.py checks that. `is_after`: Tininess::kAfterRounding.
+/// Returns a FloatResult for each pair of words, as bytes. `a` and `b` have the same length, and
+/// their words fit the format; float.py checks that. `is_after`: Tininess::kAfterRounding.
 Bytes float_run(int op, const FloatWords& a, const FloatWords& b, int exp_bits, int frac_bits,
                 int rounding, bool is_after) {
   const FloatFormat format{exp_bits, frac_bits};
@@ -358,7 +358,7 @@ Bytes float_run(int op, const FloatWords& a, const FloatWords& b, int exp_bits, 
   });
 }
 
-/// Returns x in the form of exact_result.
+/// Returns x in the form that exact_result() returns.
 ExactValue exact_value(double x) {
   constexpr int kBits = 62;  // of a significand, as in the oracle
   ExactValue value;

@@ -33,7 +33,7 @@ bool needs_no_more(const RenderSettings& settings, const Film& film, const Pixel
                        settings.error);
 }
 
-/// Returns the number of samples that each unconverged pixel may take at once.
+/// Returns the number of samples that each unconverged pixel may take in one batch.
 int samples_ahead(const RenderSettings& settings, const Film& film, const PixelRect& tile,
                   int end) {
   if (settings.error == 0.0) return 0;

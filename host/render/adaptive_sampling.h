@@ -9,7 +9,7 @@
 namespace raygate {
 
 /// Errors are estimated per block of 4 x 4 pixels. The estimate of a single pixel can be small by
-/// chance, which would stop it early. Independent blocks form a grid from the frame's upper left.
+/// chance, which would stop it early. Blocks form a grid from the frame's upper left corner.
 inline constexpr int kErrorBlock = 4;
 
 /// Errors are checked at 8, 16, 32, ... samples per pixel. The first check yields no error

@@ -1,5 +1,4 @@
-// Emitter supersampler: extra rays at the outlines of emitters that the camera sees directly, in
-// mirrors or through glass.
+// Emitter supersampler: extra rays at outlines of emitters seen directly, in mirrors or in glass.
 #pragma once
 
 #include <array>
@@ -13,7 +12,7 @@
 
 namespace raygate {
 
-/// Mask of a pixel's PathState::specular_history: bit h is history h. Initially kUnknownHistories.
+/// Set of values h of PathState::specular_history, as bits h. kUnknownHistories: not found yet.
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 

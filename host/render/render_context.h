@@ -29,8 +29,8 @@ struct RenderContext {
 // Streams of a pixel's random numbers.
 inline constexpr std::uint32_t kFilterStream = 0, kEmitterStream = 7, kLensStream = 8;
 
-/// Returns the camera ray of sample `index` of a pixel. `key` is the pixel's pixel_key; `stream` is
-/// the random stream of the positions in the pixel's filter. With one sample per pixel the ray goes
+/// Returns the camera ray of sample `index` of a pixel. `key`: pixel_key() of the pixel; `stream`:
+/// random stream of the positions in the pixel's filter. With one sample per pixel the ray goes
 /// through the centres of pixel and lens.
 [[nodiscard]] RAYGATE_INLINE Ray camera_ray(const RenderContext& context, int pixel_x, int pixel_y,
                                             std::uint32_t key, std::uint32_t index,

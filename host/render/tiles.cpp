@@ -21,7 +21,7 @@ class TileFrustum {
     }
   }
 
-  /// Returns whether the box is surely outside one of the planes. Rounding to float turns
+  /// Returns whether the box is surely outside one of the frustum's planes. Rounding to float turns
   /// directions and planes by less than 2^-22; the limit of 2^-18 covers this.
   [[nodiscard]] bool is_outside(const glm::vec3& low, const glm::vec3& high) const {
     for (const glm::dvec3& normal : inwards_) {

@@ -100,7 +100,7 @@ class TileQueue {
 [[nodiscard]] bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film,
                                     const PixelRect& tile, double margin);
 
-/// Returns whether such a ray may enter the box from `low` to `high`. Conservative, too.
+/// Like may_see_anything(), but for the box from `low` to `high` instead of a leaf.
 [[nodiscard]] bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
                                const Film& film, const PixelRect& tile, double margin);
 

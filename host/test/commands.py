@@ -23,8 +23,8 @@ SERVED = 20  # seconds until a page of --serve is closed, as by Ctrl-C
 
 
 def commands(text: str) -> list[str]:
-    """Returns the commands of a page: each line of `sh` blocks, each `python` block, and JSON files named in the text
-    before them. All Python blocks form one program, at the position of the last."""
+    """Returns the commands of a page: each line of `sh` blocks; for each `json` block, one that writes the file named
+    in the text before it; and one that runs all `python` blocks as one program, at the last block's place."""
     found: list[str] = []
     programs: list[str] = []
     for before, kind, block in re.findall(r"(.*?)^```(\w*)\n(.*?)^```$", text, re.M | re.S):

@@ -2,7 +2,7 @@
 
 A drawing is a mermaid graph. Its nodes are rooms (folders of host/, or `sim`) or, if they have a path as a label, folders
 or sources: `a["intersect/intersector"]`. An arrow (`a --> b & c` is two) says that its first node includes the second,
-which must be true. Every include between two nodes must be an arrow or follow from several. The drawing of rooms must
+which must be true. Every include between two nodes must be an arrow or a path of arrows. The drawing of rooms must
 have all rooms.
 """
 
@@ -83,7 +83,7 @@ class Drawings(unittest.TestCase):
         self.assertGreaterEqual(len(self.graphs), 3)
 
     def test_rooms(self) -> None:
-        """The first drawing: every arrow is an include, and every include follows from arrows."""
+        """The first drawing, of rooms: every arrow is an include, and every include is a path of arrows."""
         labels, arrows = self.graphs[0]
         self.assertFalse(labels)
         drawn = set(arrows)

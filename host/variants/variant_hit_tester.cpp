@@ -25,8 +25,8 @@
 // The error of t = d / V. V is N . J as computed, e(x) the exponent of x, g = max e(N_k) - e(V).
 // 1. In V, the first two products are rounded three times, the third twice. With the roundings of N
 //    and J, these are 5, 5 and 4 roundings.
-// 2. |J_k| <= 2 and |N_k| < 2 * 2^g |V|. So V has a relative error of at most
-//    r = 2 * 2 * (5 + 5 + 4) u 2^g = 56 u 2^g. With 11 digits or more, r < 2^-5.
+// 2. |J_k| <= 2 and |N_k| < 2 * 2^g |V|. So V's relative error is at most r = 2 * 2 * (5 + 5 + 4) u
+//    2^g = 56 u 2^g. With 11 digits or more, g <= max_grazing and r < 2^-5.
 // 3. d adds 2 u and the division u, so t has a relative error of at most
 //    (56 * 2^g + 3.2) u / (1 - r) < 64 u 2^g, which is 2^(TErrorUnit + g) u.
 
@@ -159,7 +159,7 @@ class VariantHitTester : public PipelineHitTester {
   }
 
  private:
-  /// Converts the batch to the variant's format.
+  /// Sets batch_ and records_ to the batch in the variant's format.
   void narrow(std::span<const RayBundle> batch) {
     const Arithmetic math = to_nearest(variant_.math);
     std::size_t count = 0;
@@ -179,7 +179,7 @@ class VariantHitTester : public PipelineHitTester {
     }
   }
 
-  /// Keeps the nearest hit of each burst. A doubt is a hit if its t is positive and finite.
+  /// If doubts are ignored: keeps a burst's nearest hit. Doubts with positive, finite t are hits.
   static void take_as_it_is(float t, HitReport& report, HitReports& reports) {
     if (!(t > 0.0f) || std::isinf(t)) return;
     // Separates equal distances in the order of the tags, far below the precision of float32.

@@ -11,7 +11,7 @@ namespace raygate {
 /// Reference model of the pipelined unit. In binary32 it equals ReferenceBurstUnit but is slower.
 using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
 
-/// Reference model of the paper's unit, bit-exact to hit_test_unit with these parameters. Rounds
+/// Reference model of the paper's unit, bit-exact to hit_test_unit with the same parameters. Rounds
 /// its inputs to the format first, as the host does.
 using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 
@@ -29,8 +29,8 @@ using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 /// Returns a tester for a pipelined variant, whose unit computes in the variant's format. Rays and
 /// records are converted to the format. P has the unit's bits.
 ///
-/// With doubts, HitTester's guarantee holds in any format of 11 digits or more. Without doubts, the
-/// format's arithmetic decides: edge values of 0 are inside, a hit has three equal signs and a
+/// With Variant::doubts, HitTester's guarantee holds in any format of 11 digits or more. Without,
+/// the format's arithmetic decides: edge values of 0 are inside, a hit has three equal signs and a
 /// positive t, and the hit with the smaller t is nearer (the first of equals). Exact arithmetic is
 /// never used: t is reported as exact, and equal values of t are separated by less than an ulp.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
@@ -40,7 +40,7 @@ using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                              std::unique_ptr<PlaneUnit> unit);
 
-/// Returns a tester that uses the reference model of a variant of either unit.
+/// Returns a tester that uses the reference model of a pipelined or a serial variant's unit.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant);
 
 }  // namespace raygate

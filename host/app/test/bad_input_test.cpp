@@ -142,7 +142,7 @@ TEST_F(BadInput, SceneFiles) {
   expect_refused(render({"scene.json"}), "scene\\.json: found no none\\.obj, expected [^\n]+");
 }
 
-/// The scene has more triangles than indices. This is reported before any loop over all triangles.
+/// More triangles than an index can number are reported before any loop over all triangles.
 TEST_F(BadInput, TooManyInstances) {
   constexpr int kSide = 300, kPlaces = 12100;
   std::string model, places;

@@ -38,7 +38,7 @@ std::atomic<bool> counts = false;
 int failing_kind = -1;
 long first_failing = 0;
 
-/// Returns whether this call, of this kind, must fail; if so, sets errno.
+/// Counts a call of this kind. Returns whether it must fail; if so, sets errno.
 bool fails(Kind kind, int error) {
   if (!counts) return false;
   const long call = ++calls[kind];

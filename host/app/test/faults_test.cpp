@@ -13,7 +13,7 @@
 namespace raygate {
 namespace {
 
-/// Returns the calls that are to fail: all, or some that are spread over the run.
+/// Returns the numbers of the calls to fail, one per run: all, or some spread over a run.
 std::vector<long> chosen(long calls, std::mt19937& random) {
   const char* const text = std::getenv("RAYGATE_FAULTS");
   const long wanted = text == nullptr ? 12 : std::atol(text);

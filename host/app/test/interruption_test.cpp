@@ -41,7 +41,7 @@ TEST_F(Render, InterruptedRunsWriteWhatThereIs) {
   }
 }
 
-/// Returns the seconds from a signal, half a second after the progress line appears, to the exit.
+/// Sends SIGINT half a second after the progress line appears. Returns the seconds to the exit.
 double seconds_to_answer(const fs::path& folder, std::vector<std::string> arguments) {
   Clock::time_point sent;
   const Outcome outcome =

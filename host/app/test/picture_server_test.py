@@ -31,7 +31,7 @@ PAGE = ROOT / "host" / "app" / "picture_page.html"
 
 
 class Served:
-    """A program that serves a scene, until the block ends."""
+    """Context manager: ./render --serve of a scene, which ends with the `with` block."""
 
     def __init__(self, *arguments):
         self.arguments = [str(ROOT / "scenes" / "cornell.json"), "--engine=cpu", "--size", "64x48",
@@ -50,7 +50,7 @@ class Served:
         self.status = self.process.returncode
 
     def get(self, path, headers=None, **options):
-        """Returns the status, headers and bytes of a reply."""
+        """Returns status, headers and bytes of the reply to `path` with the query `options`."""
         query = "?" + urllib.parse.urlencode(options) if options else ""
         request = urllib.request.Request(self.address + path + query, headers=headers or {})
         try:

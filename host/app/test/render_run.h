@@ -47,7 +47,7 @@ class Render : public testing::Test {
   json stats_;
 };
 
-/// Returns a PNG file's pixels as 24-bit RGB; its compressed bytes depend on zlib's version.
+/// Returns a PNG file's pixels as 24-bit RGB. The bytes of the file depend on zlib's version.
 inline std::vector<std::uint8_t> decode_png(const std::string& bytes, png_image* size = nullptr) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

@@ -18,7 +18,7 @@
 namespace raygate {
 namespace {
 
-/// Returns the scene files of the repository, the OBJ files without one, and a generated sphere.
+/// Returns the repository's scene files, OBJ files that have no scene file, and a generated sphere.
 std::vector<std::string> all_scenes() {
   std::vector<std::string> scenes{RAYGATE_MADE_SCENES "/sphere.obj"};
   for (const auto& entry : fs::directory_iterator(RAYGATE_SCENES)) {

@@ -1,4 +1,4 @@
-"""Renders, times and compares images of both renderers, and returns rows for the report."""
+"""Renders, times and compares images of raygate and Mitsuba, and returns rows for the report."""
 
 import json
 import pathlib
@@ -139,7 +139,7 @@ class Measurement:
         self.references: dict[str, numpy.ndarray] = {}
 
     def references_row(self, samples: int) -> dict:
-        """Returns a row that compares the references of both renderers."""
+        """Returns a row that compares raygate's reference image with Mitsuba's."""
         found = {}
         for renderer, sampler in ((Raygate(scene_file(self.name), self.side, processors()), ""),
                                   (Mitsuba(self.folder, processors()), "multijitter")):

@@ -1,5 +1,5 @@
-// Clocks, lines and bytes per ray of the simulated ray core, by kind of ray or for all rays of an
-// image, and by memory. A result that differs from the cpu engine's ends the run.
+// Clocks, and memory lines and bytes read, per ray of the simulated ray core: by kind of ray or for
+// an image, and by memory latency. A result that differs from the cpu engine's ends the run.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -35,7 +35,7 @@ using Trace = std::function<std::size_t(const IntersectorFactory&)>;
 constexpr std::pair<const char*, IntegratorKind> kPictures[] = {
     {"whitted", IntegratorKind::kWhitted}, {"path", IntegratorKind::kPath}};
 
-/// Measures one kind of rays with every memory.
+/// Measures one kind of rays with every memory latency.
 void measure(const Options& options, const std::string& scene, const std::string& kind,
              const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const Trace& trace) {
   for (const int latency : options.latencies) {

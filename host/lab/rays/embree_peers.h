@@ -32,7 +32,7 @@ namespace raygate::lab {
   X(rtcCommitGeometry)              \
   X(rtcAttachGeometry)
 
-/// Pointers to these functions: of Embree 3, with which the lab is linked, or of Embree 4.
+/// Pointers to the functions above: of Embree 3, with which the lab is linked, or of Embree 4.
 struct EmbreeFunctions {
 // NOLINTNEXTLINE(bugprone-macro-parentheses): the member's name cannot be in parentheses
 #define RAYGATE_MEMBER(function) decltype(&::function) function = ::function;
@@ -215,7 +215,7 @@ class RayStreams : public RayPackets<1, Queries> {
   static constexpr std::size_t kStream = 1024;
 };
 
-/// Returns peers for single rays, packets and, if `Queries` has them, streams, in both modes.
+/// Returns peers for rays, packets and, if `Queries` has them, streams; in default and robust mode.
 template <class Queries>
 std::vector<std::unique_ptr<Peer>> make_embree_peers(const std::string& name,
                                                      const EmbreeFunctions& embree,

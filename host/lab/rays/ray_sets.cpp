@@ -18,7 +18,7 @@ void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit
   }
 }
 
-/// Returns a point above and to the right of the eye, each by a quarter of the eye's distance.
+/// Returns a point above and to the right of the eye; both offsets are a quarter of |eye|.
 glm::vec3 light_of(const Scene& scene) {
   const Camera camera = front_camera(scene, 1.0);
   const glm::dvec3 eye(camera.eye());

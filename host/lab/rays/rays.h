@@ -24,7 +24,7 @@ struct RaySet {
   std::vector<float> t_max;    ///< empty, or one per ray: only hits with t < t_max[i] count
   bool any_hit = false;        ///< the query asks only whether there is a hit
 
-  /// Finds the hits of the rays, starting at ray `first`.
+  /// Finds the hits of hits.size() rays, starting at ray `first`.
   void find(Intersector& intersector, std::size_t first, std::span<NearestHit> hits) const {
     const std::span found = std::span(rays).subspan(first, hits.size());
     RayQuery query{.common_origin = common_origin};
@@ -37,7 +37,7 @@ struct RaySet {
 
 /// Returns three sets of rays for an image of size x size pixels that shows the whole scene. Set
 /// `camera` has camera rays, `light` occlusion rays from a point light, above and to the right of
-/// the eye, to just before the camera's hits. `scattered` rays leave these hits in random
+/// the eye, to just before the hits of the camera rays. `scattered` rays leave these hits in random
 /// directions of diffuse reflection. Camera rays are ordered as in the renderer: in tiles of 128 x
 /// 128 pixels, squares of 8 x 8, and blocks of 4 x 2. The other rays have the same order.
 [[nodiscard]] std::vector<RaySet> ray_sets(const Scene& scene, int size);

@@ -25,7 +25,7 @@ def number(value: object, form: str, dash: str = "-") -> str:
 def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, comma: str) -> tuple[list[str], list[list[str]]]:
     """Returns the heads of the columns, and the cells of each row. `dash` replaces missing values; `comma` separates thousands.
 
-    Expressions can use the row's values, `row`, and all names of templates.
+    A column's expression can use the row's values by name, the whole row as `row`, and all names of templates.
     """
     parts = [COLUMN.match(column) for column in (one for each in columns for one in ([each] if isinstance(each, str) else each))]
     forms = [part["form"] or "" for part in parts]

@@ -23,7 +23,7 @@ class Random {
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
-  /// Returns a number whose logarithm is uniformly distributed.
+  /// Returns a number from `low` to `high` whose logarithm is uniformly distributed.
   double log_uniform(double low, double high) {
     return std::exp(uniform(std::log(low), std::log(high)));
   }
@@ -82,7 +82,7 @@ struct Truth {
   std::vector<Verdict> verdicts;  ///< by ray, then by triangle
   /// For each ray, the triangles that it hits, in exact order: nearest first, ties by index.
   std::vector<std::vector<std::uint32_t>> orders;
-  /// By ray: two of its hits have equal distance, or the tie-break was used.
+  /// By ray: whether two of its hits have equal distance, or the tie-break was used.
   std::vector<bool> nearest_tied;
 
   /// Returns the triangle that a ray hits first.

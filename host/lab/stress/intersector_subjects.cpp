@@ -96,8 +96,8 @@ class IntersectorSubject : public Subject {
     for (const Corners& triangle : *mesh) trees_.emplace_back(Mesh{triangle}, make_);
   }
 
-  /// Finds the hits of all rays. Rays with a common origin are traced again, with copies to fill a
-  /// cone, and alone after a doubt. Results must not depend on other rays, groups or lanes.
+  /// Finds the hits of all rays. Rays with a common origin are traced again: all in one full cone,
+  /// which repeats rays, and each ray with doubts alone. This must not change the results.
   void search(Tree& tree) {
     hits_.assign(rays_.size(), {});
     work_.assign(rays_.size(), {});
@@ -153,7 +153,7 @@ class IntersectorSubject : public Subject {
   std::vector<bool> torn_;
 };
 
-/// Completes `kind`. Each subject has its own engine. The BVHs of an engine share one unit.
+/// Sets `kind.make` and `kind.engine`. Each subject has its own engine, whose BVHs share one unit.
 SubjectKind with(SubjectKind kind, const std::function<IntersectorOf()>& engine, const Way& way) {
   kind.make = [=] { return std::make_unique<IntersectorSubject>(engine(), way); };
   kind.engine = engine;
@@ -186,8 +186,8 @@ SubjectKind unit(const char* name, const char* what, double share, Lanes... lane
               {.delivers = true, .unit = &all_variants_of_arithmetic().front()});
 }
 
-/// Returns a subject for the ray core of `make_core`. A core that resolves doubts does not report
-/// them, so the error bounds of P for `binary32` do not apply to it.
+/// Returns a subject for the ray core of `make_core`. `binary32` must be false for a core that
+/// resolves doubts: it does not report them, so the bounds for sure hits do not apply to it.
 SubjectKind core(const char* name, const char* what, double share, bool simulated, bool binary32,
                  std::unique_ptr<CoreUnit> (*make_core)()) {
   return with({.name = name,

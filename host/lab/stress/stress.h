@@ -27,7 +27,7 @@ struct Tally {
   std::uint64_t hits = 0, doubts = 0;
   /// Largest errors, in ulps, of t and of any coordinate of P in hits that the host delivers.
   double delivered_t_ulp = 0.0, delivered_point_ulp = 0.0;
-  /// Largest errors of sure hits, relative to the bounds of tally.cpp for binary32.
+  /// Largest errors of hits without doubt, relative to the bounds of tally.cpp for binary32.
   double t_of_bound = 0.0, point_of_bound = 0.0;
   /// Largest error of P, relative to the reported bound (NearestHit::point_error).
   double point_of_said = 0.0;

@@ -99,7 +99,7 @@ glm::dvec3 on_edge(const Corners& t, Random& random) {
   return glm::mix(t[k], t[(k + 1) % 3], along);
 }
 
-/// Aims at the interior, edges, vertices, and points nearby, of any of the triangles.
+/// Adds rays to `shot` towards points in, on the border of and near its triangles.
 Shot aimed(Shot shot, Random& random) {
   const Mesh& triangles = *shot.mesh;
   for (int i = 0; i < kRays; ++i) {
@@ -128,7 +128,7 @@ Shot random_shot(Random& random) {
   return shot;
 }
 
-/// Makes angles down to 1e-7 rad between ray and plane.
+/// Makes rays at angles down to 1e-7 rad to the triangle's plane.
 Shot grazing_shot(Random& random) {
   const Corners t = random_triangle(random);
   const glm::dvec3 normal = glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]));
@@ -151,7 +151,7 @@ Shot needle_shot(Random& random) {
   return aimed(shot_at({needle(random)}, 2.0 * random.point(), random), random);
 }
 
-/// Makes shots of one random size.
+/// Makes a triangle and an origin at one random scale from `least` to `most`.
 Shot scaled_shot(Random& random, double least, double most) {
   const glm::dvec3 scale(random.log_uniform(least, most));
   return aimed(shot_at({random_triangle(random, scale)}, random.point() * scale, random), random);
@@ -210,7 +210,7 @@ Shot coplanar_shot(Random& random) {
   return aimed(shot_at(std::move(triangles), 2.0 * random.point(), random), random);
 }
 
-/// Makes copies of a triangle moved by a few steps of their format, in any order.
+/// Makes copies of a triangle in which a vertex is moved by up to three steps of the format.
 Shot near_tie_shot(Random& random) {
   const Corners base = random_triangle(random);
   Mesh triangles;
@@ -230,7 +230,7 @@ Shot near_tie_shot(Random& random) {
   return aimed(shot_at(std::move(triangles), 2.0 * random.point(), random), random);
 }
 
-/// Makes triangles that fill their boxes, in planes across an axis, equal or a few steps apart.
+/// Makes triangles perpendicular to one axis, in planes that are equal or one or two steps apart.
 Shot stack_shot(Random& random) {
   const int axis = random.below(3);
   Mesh triangles;
@@ -248,7 +248,7 @@ Shot stack_shot(Random& random) {
   return aimed(shot_at(std::move(triangles), glm::dvec3(0.0), random), random);
 }
 
-/// Makes rays (almost) parallel to axes, from points in planes of faces. BVHs must not cull these.
+/// Makes rays (almost) parallel to axes, from points in planes of faces. No BVH may cull these.
 Shot axis_shot(Random& random, const MeshPointer& mesh) {
   Shot shot{mesh};
   const Mesh& box = *mesh;
@@ -291,7 +291,7 @@ Shot useless_shot(Random& random) {
   return shot;
 }
 
-/// Makes triangles without area or thickness, or origins in their plane or at a vertex.
+/// Makes triangles without area, or origins in a triangle's plane or at its vertex.
 Shot degenerate_shot(Random& random) {
   const double grid = random.binary64_vertices ? 0x1p40 : 0x1p8;
   Corners t = random_triangle(random);

@@ -24,7 +24,7 @@
 //      |V - I . n| <= 3.00001 u sum |I_k n_k| <= (3 + 2^-9) u |I| |N|.
 // 3. |I . N| = sine |I| |N|. So by 1 and 2, V's relative error is at most r = (4 + 2^-6) u / sine.
 // 4. The division rounds once. In P, the product d I_k is rounded, too. So the bounds are
-//      (1 + (1 + 2^-7) u) (1 + u)^k / (1 - r) - 1, with k = 1 for t and k = 2 for P.
+//      (1 + (1 + 2^-7) u) (1 + u)^m / (1 - r) - 1, with m = 1 for t and m = 2 for P.
 
 namespace raygate::lab {
 namespace {
@@ -45,9 +45,9 @@ double bound(double sine, int roundings) {
   return factor - 1.0;
 }
 
-/// Return the largest relative errors of the unit's t and P in a sure hit whose exact values are
-/// normal floats. `sine` is the sine of the angle between ray and plane. About (2 + 4 / sine) 2^-24
-/// and (3 + 4 / sine) 2^-24; infinite if no bound is proven.
+/// Return bounds of the relative errors of the unit's t and P in a hit without doubt whose exact
+/// values are normal floats. `sine`: of the angle between ray and plane. The bounds are about (2 +
+/// 4 / sine) 2^-24 and (3 + 4 / sine) 2^-24; infinite if no bound is proven.
 double bound_of_t(double sine) { return bound(sine, 1); }
 double bound_of_point(double sine) { return bound(sine, 2); }
 
@@ -74,7 +74,7 @@ std::optional<Off> off(double value, double exact) {
   return Off{difference / ulp(exact), difference / std::abs(exact)};
 }
 
-/// Returns the largest error of the three coordinates.
+/// Returns the largest error of P's three coordinates.
 std::optional<Off> off(const glm::vec3& point, const glm::dvec3& direction, double t) {
   std::optional<Off> worst;
   for (int k = 0; k < 3; ++k) {

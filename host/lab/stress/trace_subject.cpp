@@ -108,7 +108,7 @@ class TraceSubject : public Subject {
     }
   }
 
-  /// Returns the table's guaranteed bounds of t, for the direction of the shot.
+  /// Returns the guaranteed bounds of the table's t, scaled to the direction of the shot.
   static Interval bounds(const RowOfTable& row, std::size_t ray) {
     const double t = std::ldexp(row.t, exponent(ray));
     return {t * (1.0 - 0x1p-33), t * (1.0 + 0x1p-33)};

@@ -138,7 +138,7 @@ Counts count_all(const Bvh& bvh, std::span<const Ray> rays) {
 }
 
 /// Adds the counts of all hit tests for one mesh: the cpu engine, hit tests that find the nearest
-/// hit only, and Embree. Simulated hardware takes only the first rays.
+/// hit only, and Embree. Simulated hardware takes only the first kSimulated rays.
 void add_counts(const Watertight& test, std::vector<Contestant>& all) {
   constexpr std::size_t kSimulated = 8192;
   const Scene scene = test::scene_of(test.mesh);

@@ -87,8 +87,8 @@ def finish(rows: list[dict]) -> list[dict]:
 def frames(rows: list[dict]) -> list[dict]:
     """Returns a copy of each picture's row, with columns of its variant and
 
-      clocks      per frame: tests through the unit times clocks per test in the variant's simulation. A variant without
-                  hardware has `clocks_modelled`, and the clocks per test of binary32 or, in the paper's unit, of serial
+      clocks      per frame: tests through the unit times simulated clocks per test. A variant that was not simulated has
+                  `clocks_modelled`, and the clocks per test of variant binary32 or, if in the paper's unit, serial
       wrong, doubtful          tests per million
       area, period_ns, frame_ms, area_time    if synthesis has measured the unit
     """

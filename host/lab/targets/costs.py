@@ -32,7 +32,7 @@ def design(variant: dict) -> catalogue.Design:
 
 
 def measured(folder: str, rows: dict[str, catalogue.Row], workers: int) -> list[dict]:
-    """Returns the results of rows, by design, measured with the user's modules in `folder`, or with hw/'s if it is ""."""
+    """Synthesises the designs of `rows` (by name) with the user's modules in `folder` or, if it is "", with hw/'s. Returns the results."""
     with brought.in_place(pathlib.Path(folder)) if folder else contextlib.nullcontext():
         failures: list[str] = []
         made = [{**record, "brought": folder} for _, records in synth.measure(list(rows.values()), synth.Targets((LIBRARY,), workers), failures)

@@ -29,12 +29,12 @@ def name(row: dict) -> str:
 
 
 def at_count(rows: list[dict]) -> list[dict]:
-    """Returns the rows with about COUNT samples."""
+    """Returns the rows with about COUNT samples per pixel."""
     return [row for row in rows if COUNT / 2 < row["samples"] < 2 * COUNT]
 
 
 def beside_ours(rows: list[dict]) -> list[dict]:
-    """Returns the rows with about COUNT samples; each has `ours`, raygate's row for the same number of threads."""
+    """Returns the rows with about COUNT samples per pixel; each has `ours`, raygate's row for the same number of threads."""
     mine = at_count(rows)
     ours = {row["threads"]: row for row in mine if row["renderer"] == "raygate"}
     return [{**row, "by": name(row), "ours": ours[row["threads"]]} for row in mine]

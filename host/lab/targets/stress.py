@@ -15,7 +15,7 @@ KINDS = FAULTS[1:4]  # reported separately, per ray
 
 
 def steps(part: str, given: argparse.Namespace, tests: int, *words: object) -> list[Step]:
-    """Returns a step for each suite."""
+    """Returns a step for each suite, with `tests` tests per suite unless `given` says otherwise. `words`: more arguments of `lab`."""
     tests = given.tests or (100_000 if given.quick else tests)
     suites = subprocess.run([LAB, "stress", "--list"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
     return [Step(part, suite, ("stress", "--suite", suite, "--tests", tests, "--seed", given.seed, *words)) for suite in suites]
@@ -39,7 +39,7 @@ def total(rows: list[dict]) -> dict:
 
 
 def cases(rows: list[dict], key: str) -> int:
-    """Returns the number of distinct cases of the subjects with this key. Each subject sees a prefix of a suite's sequence of cases."""
+    """Returns the number of distinct tests of subjects whose column `key` is true. Per suite, the one with most tests counts."""
     most: dict[str, int] = {}
     for row in rows:
         most[row["suite"]] = max(most.get(row["suite"], 0), row["tests"] if row[key] else 0)
@@ -62,8 +62,8 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
 
 
 def failures(rows: list[dict]) -> list[str]:
-    """Returns wrong decisions of exact subjects, as lines of stress/test/regressions.txt, and suites whose rays do not start inside a
-    mesh as claimed."""
+    """Returns a message for each failure: an exact subject that is wrong in a suite, with lines of regressions.txt; an exact hit test with
+    an escape or a double hit in a watertightness test; a suite whose rays do not start inside a mesh as claimed."""
     return [f"{row['subject']}, suite {row['suite']}: wrong, or beyond a proven bound" + "".join(f"\n{line}" for line in row["failures"])
             for row in of(rows, "stress") if row["exact"] and not (row["spotless"] and row["tests"])] + \
         [f"{row['by']}, {row['test']}: {row['escapes']} escapes, {row['double_hits'] or 0} double hits"

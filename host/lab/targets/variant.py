@@ -54,8 +54,8 @@ def brought_files(words: list[str]) -> dict[str, str]:
 
 
 def table(words: list[str]) -> list[dict]:
-    """Returns rows as in variants.json: binary32, binary32 in the variant's unit if this is not the pipeline, and the variant of the
-    options. The last may also have an `adder`."""
+    """Returns rows as in variants.json: binary32; if the user's variant is serial, binary32 in the paper's unit; and the user's variant,
+    which may also have an `adder`."""
     files = brought_files(words)
     mine: dict = dict(read_word(word) for word in words if word.partition("=")[0] not in files)
     if files:
@@ -86,7 +86,7 @@ def prepare(words: list[str]) -> None:
 
 
 def judged(words: list[str]) -> list[dict]:
-    """Returns proofs of user-supplied modules, see brought.judge."""
+    """Returns the results of proofs of user-supplied modules, see brought.judge."""
     usual = {"unit": "pipeline", "exponent_bits": 8, "digits": 24, "quotient_digits": 0, "rounding": "nearest-even"}
     return brought.judge(brought_files(words), costs.design({**usual, **table(words)[-1]}))
 
@@ -120,7 +120,7 @@ def _value(frame: dict, path: str) -> float | None:
 
 
 def figures(usual: dict, mine: dict) -> list[dict]:
-    """Returns rows of a card: the values of both variants as text, or a dash, and their ratio."""
+    """Returns a row for each figure of a card: its values for `usual` and `mine` as text, or a dash, and their ratio."""
     found = []
     for name, path, form in FIGURES:
         numbers = [_value(usual, path), _value(mine, path)]

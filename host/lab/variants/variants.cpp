@@ -86,7 +86,7 @@ std::unique_ptr<BurstUnit> make_rtl_burst_unit([[maybe_unused]] const Variant& v
   return nullptr;
 }
 
-/// Returns hit_test_unit, Verilated likewise and with QuotientBits, or null. Rounds words first.
+/// Returns hit_test_unit, Verilated with these and QuotientBits, or null. Rounds its inputs first.
 std::unique_ptr<PlaneUnit> make_rtl_plane_unit([[maybe_unused]] const Variant& variant) {
 #define RAYGATE_MODEL(top, ...)            \
   if (matches(variant, __VA_ARGS__))       \
@@ -144,8 +144,8 @@ class VariantBursts {
     for (float& bound : record.bounds) function(bound);
   }
 
-  /// Returns the record as the host would send it. Records that are not finite, and some others,
-  /// are rounded word by word.
+  /// Returns the record as the host would send it (variant_record). Records that are not finite,
+  /// and a quarter of the others, are rounded word by word instead.
   PolygonRecord narrow(const PolygonRecord& wide) {
     PolygonRecord record = wide;
     bool finite = true;
@@ -194,7 +194,7 @@ class VariantBursts {
   std::mt19937_64 random_;
 };
 
-/// Result of a comparison.
+/// Result of comparing a unit with its reference model.
 struct VariantCheck {
   std::uint64_t tests = 0;  // hit tests through unit and model
   HitCounters events{};     // of the pipelined unit: what the sample covers
@@ -236,7 +236,7 @@ VariantCheck check_pipeline(const Variant& variant, BurstUnit& rtl, std::uint64_
   return check;
 }
 
-/// Compares P of random tests, bit by bit.
+/// Compares P of random tests with the reference model's, bit by bit.
 VariantCheck check_serial(const Variant& variant, PlaneUnit& rtl, std::uint64_t tests,
                           std::uint64_t seed) {
   VariantBursts random(variant, seed);

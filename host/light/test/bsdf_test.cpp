@@ -50,8 +50,8 @@ Material facets(float metallic, float roughness, float transmission = 0.0f) {
   return material;
 }
 
-/// Reflected and transmitted fraction of white light from all sides. `sampled` is an estimate with
-/// sample() and pdf(); `integral` uses fixed directions instead.
+/// Scattered fraction of white light from all sides: `sampled` by sample() and pdf(), `integral` by
+/// fixed directions. `chosen`: fraction of samples that count; `density`: integral of pdf().
 struct Balance {
   double sampled = 0.0, integral = 0.0, chosen = 0.0, density = 0.0;
   float off_unit = 0.0f;  // largest error of a sample's squared length

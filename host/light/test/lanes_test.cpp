@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kInputs = 6, kOutputs = 4, kRounds = 20000;
 
-/// kLanes inputs each for functions of up to six numbers, and their outputs.
+/// Inputs of kLanes calls of a function with up to kInputs arguments, and their outputs.
 struct Case {
   alignas(64) float in[kInputs][kLanes];
   alignas(64) float out[kOutputs][kLanes];

@@ -52,7 +52,7 @@ def rays(origins: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Array, Arra
 
 
 def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
-    """Raises InputError unless all numbers are finite with a magnitude of at most 2^exponent. `each`: a word for a row."""
+    """Raises InputError unless all numbers are finite with a magnitude of at most 2^exponent. `each`: what messages call a row."""
     wrong = ~(np.abs(array) <= np.float64(2.0 ** exponent)).all(axis=tuple(range(1, array.ndim)))
     if wrong.any():
         row = int(wrong.argmax())
@@ -75,7 +75,7 @@ def triangles(name: str, corners: Array) -> Array:
 
 
 def vertex_numbers(faces: npt.ArrayLike | None, count: int, name: str = "faces") -> Array:
-    """Returns faces, of shape (M, 3), as numbers from 0 to `count` - 1."""
+    """Returns `faces` as an array of shape (M, 3). Raises InputError unless all numbers are whole and from 0 to `count` - 1."""
     if faces is None:
         raise InputError(f"{name}: found None, expected the numbers of three vertices in each row")
     array = plain(name, faces)

@@ -70,7 +70,7 @@ class Scene(_raygate.Scene):
     @in_context
     def __init__(self, file_or_vertices: Any, /, faces: npt.ArrayLike | None = None, *, smooth: float | None = None,
                  degenerate: Degenerate = "leave out", threads: int | None = None) -> None:
-        """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Unlike ./render, a.obj does not read a.json beside it. Or takes
+        """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Unlike ./render, it does not read a.json beside a.obj. Or takes
         vertices, shape (N, 3), float32 or float64, and faces, shape (M, 3): whole numbers of each face's vertices, from 0.
 
         Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them; `degenerate_faces` lists
@@ -197,5 +197,5 @@ class Scene(_raygate.Scene):
 
 
 def _settings(**options: object) -> list[tuple[str, str]]:
-    """Returns keywords as the options of ./render: names and text, without those that are None."""
+    """Returns the keywords that are not None as options of ./render: pairs of name and text."""
     return [(name, str(value)) for name, value in options.items() if value is not None]

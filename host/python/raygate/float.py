@@ -219,7 +219,7 @@ def _words(array: Array, format: Format) -> Array:
 
 
 def _exact(array: Array, format: Format, is_pythons: bool) -> Array:
-    """Returns the words of floats. Rounds Python's numbers; others must be numbers of the format."""
+    """Returns the words of floats. Rounds them if `is_pythons`; otherwise they must be numbers of the format."""
     bits, flags = encode(array, format)
     if np.any(flags):
         wrong = np.atleast_1d(array)[np.atleast_1d(flags) != 0].flat[0]

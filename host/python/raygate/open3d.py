@@ -80,7 +80,7 @@ class RaycastingScene:
         return shape, self._built.trace(rows[:, :3], rows[:, 3:], limits, hits=hits, columns=columns, threads=_threads(nthreads))
 
     def _names(self, triangles: Array, shape: tuple[int, ...]) -> dict[str, Array]:
-        """Returns the numbers of geometries, and of triangles in them, in this shape."""
+        """Returns "geometry_ids" and "primitive_ids" of triangle numbers, in this shape: INVALID_ID for the number -1."""
         parts = np.searchsorted(self._starts, triangles, "right") - 1
         is_hit = triangles >= 0
         numbers = {"geometry_ids": parts, "primitive_ids": triangles - self._starts[parts]}

@@ -49,7 +49,7 @@ def grid(x, y, z, corner):
 
 
 def truth(origin, direction, corners):
-    """Returns the faces that a ray meets, nearest first, by definition; -1 instead if the ray meets an edge or a plane exactly."""
+    """Returns the faces that a ray meets, nearest first, by definition; [-1] if the ray meets an edge or starts in a face's plane."""
     a, b, c = np.moveaxis(corners - origin, 1, 0)
     found = np.ones(len(corners), bool)
     d = np.einsum("ij,ij->i", a, np.cross(b, c))
@@ -90,7 +90,7 @@ class Peers(unittest.TestCase):
             self.compare(name, np.ascontiguousarray(vertices, float), np.ascontiguousarray(faces, np.int64))
 
     def compare(self, name, vertices, faces):
-        """Prints the rows of a model. Half of the rays aim at edges."""
+        """Prints the table rows of one model. Half of the rays aim at edges."""
         random, corners = np.random.default_rng(1), vertices[faces]
         low, high = vertices.min(axis=0), vertices.max(axis=0)
         origins = low + (high - low) * random.uniform(-0.5, 1.5, (RAYS, 3))

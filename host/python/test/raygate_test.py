@@ -359,8 +359,8 @@ class Arrays(unittest.TestCase):
         self.assertLessEqual(names, set(re.findall(r"\w+", raygate.Scene.render.__doc__)))
 
     def test_inside_beside_faces_along_the_ray(self):
-        """Tetrahedra with an edge that runs along the ray of `inside` but for 2^-58, and points near
-        its end, against whole numbers of any length."""
+        """Compares inside() with exact integers: tetrahedra with an edge from about 0 along
+        inside()'s ray, off by 2^-58, and points near 0."""
         random, along, tiny = np.random.default_rng(5), [0.36, 0.48, 0.8], 2.0 ** -58
 
         def is_left(a, b, c, points):
@@ -523,7 +523,7 @@ class Render(unittest.TestCase):
 
 
 def in_child(work):
-    """Returns whether `work` is true in a child of this process."""
+    """Returns whether work() returns true in a forked child of this process."""
     child = os.fork()
     if child == 0:
         done = False
@@ -576,7 +576,7 @@ class Embedding(unittest.TestCase):
             self.assertTrue((found["distance"] > 1e-3 * far).all())
 
     def seconds_until_interrupted(self, call, after=0.1):
-        """Returns the processor time that `call` takes after a signal like Ctrl-C's, sent after `after` seconds of processor time."""
+        """Sends a signal like Ctrl-C's after `after` seconds of processor time. Returns the processor time until `call` ends."""
         raised = signal.signal(signal.SIGPROF, signal.default_int_handler)
         signal.setitimer(signal.ITIMER_PROF, after)
         start = time.process_time()

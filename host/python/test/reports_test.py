@@ -50,7 +50,7 @@ def uri(data, kind="application/octet-stream"):
 
 
 class Gltf:
-    """The square as glTF. `json` may be changed before text()."""
+    """The square of CORNERS as glTF. `json` may be changed before text()."""
 
     def __init__(self, picture=None, indices=(0, 1, 2, 0, 2, 3), **attributes):
         self.data = b""
@@ -113,7 +113,7 @@ def morphed(**of_node):
 
 
 def sparse(corners, count=None, values=None, number=0):
-    """Returns the square with a sparse accessor of these corners. A single one replaces the square's; with several, the others are 0."""
+    """Returns the square with sparse positions for corners with these indices; other corners are 0 or, if there is one index, unchanged."""
     gltf = Gltf(NORMAL=[(0., 0., 1.)] * 4)
     places = gltf.view([(3., 3., 0.) if k == 2 else CORNERS[k] for k in corners])
     gltf.json["accessors"][number]["sparse"] = {"count": count or len(corners), "indices": {"bufferView": gltf.view(corners, "H"), "componentType": 5123},
@@ -410,7 +410,7 @@ class Reports(unittest.TestCase):
 
     def check(self, scene, warns=(), rays=(LOWER,), numbers=None,
         distances=None, sides=None, colours=None, triangles=None, depths=None, albedo=None, normal=None):
-        """`rays` go down from z = 5 at these places. `colours`, `triangles` and `depths`: a letter or digit for each pixel."""
+        """`rays`: (x, y), down from z = 5. `colours` (LETTERS), `triangles`, `depths` (digits): a character per pixel, / between rows."""
         self.assertEqual(len(scene.warnings), len(warns), scene.warnings)
         for warning, pattern in zip(scene.warnings, warns):
             self.assertRegex(warning, pattern)

@@ -57,8 +57,8 @@ Scene furnace(float albedo) {
 
 const Camera kInside = camera_at({0.2, 0.1, 0.3}, {-1, -0.4, -0.7}, 5.0);
 
-/// How often, in percent, the 95 % interval of a pixel contains the known value, in a picture of
-/// one block: over all pixels, and for the pixels with the lowest and the highest rate.
+/// Percentage of seeds for which a pixel's 95 % interval contains the known value, in a picture of
+/// one block: mean over the pixels, lowest and highest.
 struct Coverage {
   double all, least, most;
 };
@@ -92,7 +92,7 @@ Scene floor_under(Scene lights) {
 
 const Camera kAtFloor = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
 
-/// Prints how often the interval contains the value, and expects 93 % to `most` %.
+/// Prints `coverage`, and expects that its mean is from 93 % to `most` %.
 void expect_coverage(const char* name, int samples, double most, const Coverage& coverage) {
   std::printf("%-22s %4d samples: %5.1f %% (pixels: %.1f to %.1f), %d seeds\n", name, samples,
               coverage.all, coverage.least, coverage.most, seeds());

@@ -151,7 +151,7 @@ TEST(Caustics, AreSeenByALens) {
   expect_same_means(room(), Camera::look_at(setting, 1.0), 256);
 }
 
-/// Adds a ball with a sphere's normals.
+/// Adds a ball of triangles with the vertex normals of a sphere.
 void add_smooth(Scene& scene, const glm::vec3& middle, float radius, const Material& material) {
   const std::size_t first = scene.triangles.size();
   add(scene, sphere(2, radius, middle), material);

@@ -24,8 +24,8 @@ Camera camera_of(Projection projection = Projection::kPerspective, double apertu
                          1.0);
 }
 
-/// An emitter that covers these pixels of 8 x 8, from left to right and from the upper edge down;
-/// or, if `in_mirror`, an emitter whose mirror image covers them.
+/// An emitter that covers the rectangle from (left, upper) to (right, lower), in pixels of an image
+/// of 8 x 8; or, if `in_mirror`, an emitter whose mirror image covers it.
 struct Panel {
   Scene scene;
   Camera camera;
@@ -84,7 +84,7 @@ Found find(const Scene& scene, const Camera& camera, const RenderSettings& asked
 constexpr HistoryMask kDirect = 1u << 1;
 constexpr HistoryMask kInMirror = 1u << 2;
 
-/// Expects the histories of a panel that covers pixels [3, 6) x [2, 5) and half of those around.
+/// Expects the mask `expected` in the ring of pixels around [3, 6) x [2, 5), and 0 elsewhere.
 void expect_around(const std::vector<HistoryMask>& ways, HistoryMask expected) {
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -199,7 +199,7 @@ TEST(EmitterSupersampler, AreNotMadeWhereNoLightCanBe) {
   EXPECT_EQ(find(panel.scene, panel.camera, options(4)).rays, 0u);
 }
 
-/// Returns the mean squared error of the pixels, whose coverage is known.
+/// Returns the mean squared error of the pixels of `panel`, which covers this rectangle.
 double error(const Panel& panel, float left, float upper, float right, float lower, int samples) {
   RenderStats stats;
   const Bvh bvh(panel.scene);

@@ -192,7 +192,7 @@ TEST(Renderer, AnIntersectorsExceptionReachesTheCaller) {
                std::runtime_error);
 }
 
-/// Reports three billion tests for each ray.
+/// An intersector that reports three billion tests for each ray.
 class Counting : public CpuIntersector {
  public:
   using CpuIntersector::CpuIntersector;

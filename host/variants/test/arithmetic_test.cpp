@@ -41,7 +41,7 @@ TEST(Arithmetic, OfAllDigitsIsTheMachines) {
   }
 }
 
-/// Expects the float of `digits` digits that is nearest to `exact` (or next towards zero).
+/// Expects that `result` is `exact` rounded to `digits` digits: to nearest or towards zero.
 void expect_rounded(float result, const mpq_class& exact, int digits, Rounding rounding) {
   if (exact == 0 || !std::isnormal(result)) return;
   const double ulp = std::ldexp(1.0, std::ilogb(result) - digits + 1);

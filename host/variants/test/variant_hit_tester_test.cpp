@@ -51,7 +51,7 @@ Case hard_case(Random& random) {
   return c;
 }
 
-/// Runs one test, as a bundle of one ray and one record.
+/// Tests one ray against one record.
 HitReports test(HitTester& tester, const Case& c, const PolygonRecord& record) {
   RayBundle bundle;
   for (int k = 0; k < 3; ++k) bundle.direction[k][0] = c.ray.direction[k];

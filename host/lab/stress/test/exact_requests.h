@@ -32,7 +32,7 @@ inline ExactCase case_of(const ExactRequest& request) {
 /// Makes cases from the shots of a suite in binary32. Up to three hits of a ray are compared with a
 /// limit near the hit's t and with the next hit (or the same triangle, rotated). Random triangles
 /// are tested for a hit. Each ray also adds a case of random numbers, whose exponents have the
-/// whole range of float or a range of 12.
+/// whole range of float or span only 12.
 class ExactCases {
  public:
   ExactCases(const Suite& suite, std::uint64_t seed) : generate_(suite.make()), random_(seed) {}

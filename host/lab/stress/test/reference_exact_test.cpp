@@ -8,7 +8,7 @@
 namespace raygate::lab {
 namespace {
 
-/// Returns the number of cases per suite; RAYGATE_STRESS gives another number for all suites.
+/// Returns the number of cases per suite. RAYGATE_STRESS, if set, is the total of all suites.
 std::size_t cases_of_a_suite() {
   const char* wanted = std::getenv("RAYGATE_STRESS");
   return wanted == nullptr ? 2000 : std::strtoul(wanted, nullptr, 10) / all_suites().size() + 1;
