@@ -38,7 +38,7 @@
 namespace raygate {
 namespace {
 
-constexpr float kFarthest = std::numeric_limits<float>::max();  // larger than any t or entry
+constexpr float kFarthest = std::numeric_limits<float>::max();  // larger than any finite t or entry
 
 }  // namespace
 

@@ -61,7 +61,7 @@ inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
 /// t (1 + 2^-21), rounded up. The result is at most the largest float, so that boxes with an entry
 /// of +infinity are skipped. For negative t the result is -1: every box is skipped.
 [[nodiscard]] inline float cutoff_beyond(double t) {
-  constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float; larger than any t or entry
+  constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float
   if (t < 0.0) return -1.0f;
   const auto nearest = std::bit_cast<std::int32_t>(static_cast<float>(t * kExitGrowth));
   return std::bit_cast<float>(std::min(nearest + 1, kFarthest));

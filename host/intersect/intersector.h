@@ -100,8 +100,8 @@ struct RayQuery {
   /// CpuIntersector accepts exact rays, and ignores `common_origin` if there are any.
   /// NearestHit::point is computed from the rounded ray.
   std::span<const ExactRay> exact_rays{};
-  /// The primitive that the ray leaves and surely does not hit, or NearestHit::kNone. Does not
-  /// change results, but saves the test that is hardest to decide.
+  /// The primitive on which the ray starts, if the caller knows that the ray does not hit it; else
+  /// NearestHit::kNone. Does not change results; saves the test that is hardest to decide.
   std::span<const std::uint32_t> source_ids{};
   /// Receives the work of each ray.
   std::span<RayWork> work{};

@@ -1,4 +1,4 @@
-// Material parameters: a material of any file format as the record that shading reads.
+// Converts a material of any file format to the parameters that shading reads.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ struct alignas(16) PathState {
   /// turns code h into 2 h, glass into 2 h + 1. 0: the path met more than four, or another surface.
   std::uint32_t specular_history = 1;
   /// Density of light paths over the density of camera paths, for the path so far; on light paths
-  /// the inverse (see LightPaths). 0: only one kind of path finds this light.
+  /// the inverse (see LightPaths). 0: only one kind of path finds the light, so it has full weight.
   float light_over_camera_pdf = 0.0f;
   /// Bit mask of specular histories at which emission is omitted because EmitterSupersampler adds
   /// it. In rays of EmitterSupersampler: the histories to follow.

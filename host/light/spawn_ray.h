@@ -112,7 +112,7 @@ enum class SpawnSide {
   kTransmitted,  ///< the other side: refraction
 };
 
-/// A ray with a scaled direction that hit the triangle `primitive` and spawns another ray.
+/// A ray, with a direction from scaled_direction(), that hit triangle `primitive` and spawns a ray.
 struct SpawnQuery {
   const Ray* ray = nullptr;
   std::uint32_t primitive = 0;

@@ -44,8 +44,8 @@ module booth_multiplier #(
   // Partial products: row k has weight 4**k
   //
   // Let n be the word `negative`. The product is the sum of the rows plus n - n * 2**(Width+1): see booth_row. Modulo
-  // 2**(2*Width), -n * 2**(Width+1) is 2**(Width+1) + ~n * 2**(Width+1). The odd bits of ~n are 1: these constants
-  // replace all sign extensions.
+  // 2**(2*Width), -n * 2**(Width+1) is 2**(Width+1) + ~n * 2**(Width+1). Bit 2k of n is digit k's sign, odd bits are
+  // 0. So the odd bits of ~n are 1. These constants replace all sign extensions.
 
   logic [2*Width*Rows-1:0] rows;
 

@@ -4,11 +4,12 @@
 // bfloat16: 8 and 7), packed as in IEEE 754: sign, biased exponent, fraction. Operands and results may be subnormal;
 // every NaN result is the one quiet NaN with sign 0 and only the top fraction bit set (0x7fc00000 in binary32). Formats
 // need 3 <= ExpWidth and 2 <= FracWidth <= 2**(ExpWidth-1): the exponent of a subnormal result then fits into ExpWidth
-// + 2 signed bits. The divider needs FracWidth <= 53, the multiplier, with arith_pkg's groups, FracWidth <= 75.
+// + 2 signed bits. The divider needs FracWidth <= 53. The multiplier needs FracWidth <= 75, the widest sum for which
+// arith_pkg has carry-select groups.
 //
-// hw/arith's adder (of kind Arith) adds and subtracts significands and exponents; its multiplier and srt_divider
-// multiply and divide significands. Comparisons and steps by one or two use the language's operators: synthesis makes
-// structures for them that are no slower than those of hw/arith.
+// hw/arith's adder (of the kind that parameter Arith chooses) adds and subtracts significands and exponents; its
+// multiplier and srt_divider multiply and divide significands. Comparisons, and increments by one or two, use the
+// language's operators: synthesis makes structures for them that are no slower than those of hw/arith.
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
 package fp_pkg;
 

@@ -269,7 +269,7 @@ module hit_test_pipeline
     );
   end
 
-  // ---- Results: the queue keeps a word free for each clock edge at which a result in flight may arrive
+  // ---- Results: while ready_o is high, the queue has room for all results in flight, at most one for each clock edge
 
   localparam int unsigned ResultWidth = 2 + 2 * TagWidth + 2 + Width + TErrorWidth + 1 + 3 * Width;
   logic push;

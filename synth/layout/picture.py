@@ -21,7 +21,8 @@ REST = "the rest"
 def parts_of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, str]:
     """Returns the part of each cell, in the order of the legend.
 
-    In an adder, parts are bands of BAND bits; a cell is in the band of the highest operand bit on which it depends, in any mapping.
+    In an adder, parts are bands of BAND bits; a cell is in the band of the highest operand bit on which it depends. `outputs`: names
+    of output pins by kind of cell.
     In other designs, parts are the instances in the top module; cells outside these instances are in part REST.
     """
     if design.top == "adder":

@@ -145,7 +145,7 @@ def _run(netlist: Netlist, technology: Technology, widths: dict[str, int], ports
 
 def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
               core: tuple[int, int]) -> dict[str, str]:
-    """Returns the bookshelf files by suffix. `widths`: widths of cells, in tracks. `core`: number of tracks per row, number of rows."""
+    """Returns the bookshelf files by suffix. `widths`: of cells, in tracks. `ports`: x in tracks, y in rows / STEPS. `core`: (tracks, rows)."""
     sites, rows = core
     pitch = technology.tracks[0].pitch
     nodes = [f"{name} {widths[name]} {STEPS}" for name in netlist.cells] + [f"{name} terminal" for name in ports]

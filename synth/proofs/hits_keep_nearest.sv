@@ -2,7 +2,7 @@
 // has been reported once as a doubt, or its lower bound of t is above t_max. t_max is the minimum of the user's t_max
 // and the upper bounds of t of all hits so far. An undecided test is reported once as a doubt. The output P and t are
 // those of the kept hit. Tests in flight are counted correctly, and the queue has room for a doubt of each.
-// opened_closest_hit is closest_hit of two rays with registers and memories as outputs. fifo_keeps_order proves that
+// opened_closest_hit is closest_hit for two rays; its registers and memories are outputs. fifo_keeps_order proves that
 // its queues keep order.
 module hits_keep_nearest #(
   localparam int unsigned Rays     = 2,

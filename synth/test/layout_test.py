@@ -120,7 +120,7 @@ class Trees(unittest.TestCase):
             self.ohms([wire for wire in wires if wire.to != "metal3"])
 
     def test_turned(self):
-        """Turns the metal of a cell about both axes."""
+        """Orientation S turns the metal of a cell by 180 degrees."""
         self.assertEqual(parasitics.turned(Rect("metal1", 1, 2, 3, 4), (10, 20), (100, 200), "S"),
                          Rect("metal1", 107, 216, 109, 218))
 

@@ -58,8 +58,8 @@ struct CoreResult {
   std::uint32_t line = 0;      ///< kEnd with kMemory: the line read
 };
 
-/// Statistics of a core since its construction. `tests` counts triangle lines that the triangle
-/// test processed, `depth_doubts` sure hits reported as doubts. Clocks are 0 without simulation.
+/// Statistics of a core since its construction. `tests` counts triangles tested, `depth_doubts`
+/// sure hits reported as doubts, because their order is not sure. Clocks are 0 without simulation.
 struct CoreCounters : HitCounters {
   std::uint64_t rays = 0;
   std::uint64_t nodes = 0;      ///< node lines processed by the box unit

@@ -49,7 +49,7 @@ class BatchTester {
   /// Completes the oldest batch and appends its results, in the order of the batch.
   virtual void finish(std::vector<Result>& results) = 0;
 
-  /// Tests a batch in one call. No other batch may be started.
+  /// Tests a batch in one call. No other batch may be in progress.
   void run(std::span<const RayBundle> batch, std::vector<Result>& results) {
     start(batch);
     finish(results);

@@ -85,7 +85,7 @@ class Mitsuba:
         return json.loads(answer)
 
     def render(self, sampler: str, samples: int, seed: int) -> tuple[dict, numpy.ndarray]:
-        """Returns the timing and the image."""
+        """Returns the worker's answer (mitsuba_worker.py), which has the times in seconds, and the image."""
         asked = {"sampler": sampler, "samples": samples}
         if (sampler, samples) not in self._warm:  # each kind of image needs its own kernel
             self._ask(**asked, seed=seed + 1)

@@ -186,8 +186,8 @@ SubjectKind unit(const char* name, const char* what, double share, Lanes... lane
               {.delivers = true, .unit = &all_variants_of_arithmetic().front()});
 }
 
-/// Returns a subject for the ray core of `make_core`. `binary32` must be false for a core that
-/// resolves doubts: it does not report them, so the bounds for sure hits do not apply to it.
+/// Returns a subject for the ray core of `make_core`. `binary32`: checks the error bounds of sure
+/// hits. Must be false for a core that resolves doubts, whose hits need not be sure in binary32.
 SubjectKind core(const char* name, const char* what, double share, bool simulated, bool binary32,
                  std::unique_ptr<CoreUnit> (*make_core)()) {
   return with({.name = name,

@@ -418,7 +418,7 @@ class Bounces {
     bounces_left_ = kBounces;
   }
 
-  /// Follows one ray of the last shot to its hit and reflects it. Restarts if that is not possible.
+  /// Reflects one of the last kRays rays at its hit. If that is not possible, starts in a new mesh.
   void bounce(Random& random) {
     const Ray ray = {origin_, directions_[random.below(kRays)]};
     const auto primitive = first_hit(*bvh_, ray);

@@ -206,8 +206,8 @@ constexpr std::uint64_t kBatch = 5000;
 
 /// Sends about `tests` random and adversarial tests through the Verilated unit and its reference
 /// model, and compares every bit of every result, and the events. Half of the records are triangles
-/// as the host would send them; the others have replaced words, bounds close to |U|, distances
-/// close to the margin of a near tie, and random bits.
+/// as the host would send them; the others have replaced words, error bounds close to the edge
+/// function's magnitude, distances that are just or just not near ties, and random bits.
 VariantCheck check_pipeline(const Variant& variant, BurstUnit& rtl, std::uint64_t tests,
                             std::uint64_t seed) {
   VariantBursts random(variant, seed);

@@ -1,5 +1,4 @@
-// GltfFile: checked access to the JSON, buffers and images of a glTF 2.0 file (a part of
-// gltf_loader.cpp).
+// GltfFile, for gltf_loader.cpp: checked access to JSON, buffers and images of a glTF 2.0 file.
 #pragma once
 
 #include <algorithm>
@@ -177,8 +176,7 @@ class GltfFile {
 
   /// Returns a list of the file, such as "nodes"; null if it has none.
   [[nodiscard]] const Json& list(const char* key) const { return member(json, key); }
-  /// Returns element `index` of a list. Throws InputError, which calls the element `what`, if there
-  /// is none.
+  /// Returns element `index` of a list. If there is none, throws InputError that names it `what`.
   [[nodiscard]] const Json& at(const Json& list, int index, const char* what) const {
     const std::size_t size = list.is_array() ? list.size() : 0;
     if (index >= 0 && static_cast<std::size_t>(index) < size) {

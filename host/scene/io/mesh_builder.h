@@ -129,12 +129,12 @@ class MeshBuilder {
 /// extent, and no difference exceeds three times the extent.
 [[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
 
-/// Sets the normals of triangles that have no normals but a smooth edge. The normal at a corner is
-/// the weighted mean over the triangles that are connected there by smooth edges (weights of N.
-/// Max, "Weights for computing vertex normals from facet normals", Journal of Graphics Tools 4 (2),
-/// 1999; exact on spheres). An edge is smooth if exactly two triangles without normals share it,
-/// with equal positions and in opposite directions, and
-/// * the angle between their normals is at most `angle`, in degrees up to 180, if that is given;
+/// Sets the normals of triangles that have no normals and at least one smooth edge. The normal at a
+/// corner is the weighted mean over the triangles that are connected there by smooth edges (weights
+/// of N. Max, "Weights for computing vertex normals from facet normals", Journal of Graphics Tools
+/// 4 (2), 1999; exact on spheres). An edge is smooth if exactly two triangles without normals share
+/// it, with equal positions and in opposite directions, and
+/// * the angle between their planes is at most `angle`, in degrees up to 180, if that is given;
 /// * otherwise they have the same group in `groups`, other than 0.
 void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<double> angle,
                         Scene& scene);

@@ -133,9 +133,9 @@ struct SceneFile {
 /// STL files. Ignores the normals, colours and attributes in the file.
 [[nodiscard]] Scene load_stl(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Loads the texture files of all materials that triangles use, once for each kind of content, into
-/// Scene::textures, and sets the materials' indices. Drops fully opaque opacity maps. Warns about a
-/// file that is missing or cannot be read.
+/// Loads the texture files of all materials that triangles use into Scene::textures, a file used as
+/// colour and as opacity once for each, and sets the materials' texture indices. Drops fully opaque
+/// opacity maps. Warns about a file that is missing or cannot be read.
 void load_textures(Scene& scene);
 
 }  // namespace raygate
