@@ -1,5 +1,4 @@
-// The options of the programs and of the Python module's pictures: values, table rows, and checks
-// that options are compatible.
+// Options of the programs and of Python's pictures: values, table rows, checks that they fit.
 #pragma once
 
 #include <filesystem>

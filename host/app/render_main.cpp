@@ -126,9 +126,9 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
       outcome += " (" + std::to_string(least) + " to " + std::to_string(most) + " of " +
                  std::to_string(options.render.samples) + " samples per pixel)";
     }
-    if (film.keeps_sums && outputs.exr) {
-      outcome += "; --resume " + outputs.exr->string() + " goes on from there";
-    }
+    outcome += film.keeps_sums && outputs.exr
+                   ? "; --resume " + outputs.exr->string() + " goes on from there"
+                   : "; only a run with --channels sums can be resumed";
     throw Interrupted(signal, outcome);
   };
   std::string last_trouble;
@@ -202,6 +202,11 @@ void run(const Options& options) {
   report.triangles = triangle_count(scene);
   report.rounding = scene.rounding;
   const std::string digest = digest_of(scene);  // without default lights and ground
+  const bool is_lit = scene.environment || !scene.directional_lights.empty() ||
+                      std::ranges::any_of(scene.materials, emits);
+  if (is_lit && std::ranges::count(scene.materials, 10, &Material::illumination_model) > 0) {
+    scene.warnings.emplace_back("illum 10: matches the background under point lights alone");
+  }
   print_warnings(scene.warnings, options.verbose);
   std::vector<std::filesystem::path> inputs = scene.files;
   inputs.push_back(options.scene);

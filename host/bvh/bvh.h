@@ -193,8 +193,7 @@ class Bvh {
   /// Builds the BVH of these triangles and of the instances, with at most `most_levels` levels.
   void build(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
              int most_levels, int threads);
-  /// Builds the BVHs of the scene's meshes and adds the instances. Returns the largest number of
-  /// levels below an instance.
+  /// Builds the BVHs of meshes and adds the instances. Returns the most levels below an instance.
   int add_instances(const Scene& scene, int threads);
   /// Returns the number of nodes on the longest path down from a node.
   [[nodiscard]] int levels(std::uint32_t index = 0) const;

@@ -33,8 +33,7 @@ RAYGATE_INLINE float half_area(const Box& box, float unit) {
   return sizes[0] * sizes[1] + sizes[1] * sizes[2] + sizes[2] * sizes[0];
 }
 
-/// Returns the bounds of three corners, widened by one float on every side. Finite for coordinates
-/// below the largest float.
+/// Returns corners' bounds, widened by a float on each side; finite for all but the largest float.
 RAYGATE_INLINE Box box_around(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const Box corners[3] = {{a.x, a.y, a.z, 0.0f, -a.x, -a.y, -a.z, 0.0f},
                           {b.x, b.y, b.z, 0.0f, -b.x, -b.y, -b.z, 0.0f},

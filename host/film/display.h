@@ -1,5 +1,4 @@
-// 8-bit images for a display: sRGB codes of a film, false colours of channels such as depths,
-// counts and ids, and PNG files.
+// 8-bit images for a display: sRGB codes of a film, false colours of a channel, and PNG files.
 #pragma once
 
 #include <array>

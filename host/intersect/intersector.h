@@ -155,8 +155,7 @@ class Intersector {
 /// Makes the intersector of a thread; called on that thread. The factory owns shared data.
 using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 
-/// Returns, exactly, whether a hit has t < t_max, for t_max >= 2^-149. Values above the largest
-/// float mean no limit.
+/// Returns, exactly, whether a hit has t < t_max >= 2^-149; above the largest float: no limit.
 [[nodiscard]] bool is_before(const Bvh& bvh, const ExactRay& ray, const NearestHit& hit,
                              double t_max);
 

@@ -72,8 +72,7 @@ bool set_plane(const glm::dvec3& origin, const Corners& t, PolygonRecord& record
 }
 
 // The functions below do the operations of exact.cpp and of the functions above, in the same order.
-// So all bits are equal if double is accurate enough and all exponents are ordinary. make_record
-// makes all other records.
+// So all bits are equal if double is accurate enough and exponents ordinary; else see make_record.
 
 constexpr double kU = 0x1p-53;  // as in exact.cpp
 

@@ -32,8 +32,7 @@ struct alignas(64) PolygonRecord {
 };
 static_assert(sizeof(PolygonRecord) == 64);
 
-/// Returns the exponent of the power of two that scales the largest component of `v` into [1, 2); 0
-/// if `v` is 0 or not finite.
+/// Returns e: 2^e scales the largest component of `v` into [1, 2); 0 if `v` is 0 or not finite.
 template <class T>
 [[nodiscard]] int to_unit(const glm::vec<3, T>& v) {
   const T size = largest(v);

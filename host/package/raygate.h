@@ -13,10 +13,12 @@
 namespace raygate {
 
 /// A set of triangles in a BVH, for ray queries. Which triangles are hit, and in which order, is
-/// decided exactly on the given numbers (except for underflow, see below): a ray through an edge
-/// or a corner of a closed mesh hits exactly one of the triangles that meet there, without leaks.
-/// Of two hits at equal distance, the hit with the lower triangle index comes first. Queries are
-/// thread-safe. They set IEEE 754 arithmetic and restore the caller's mode when they return.
+/// decided exactly on the given numbers (except for underflow, see below). A ray through an edge or
+/// a corner counts as tilted by an infinitesimal angle towards +x, a smaller one towards +y and +z.
+/// So where it crosses a closed mesh it hits one triangle; where it touches it, none or two; of the
+/// border of an open mesh, one side is hit. Of two hits at equal distance, the hit with the lower
+/// triangle index comes first. Queries are thread-safe. They set IEEE 754 arithmetic and restore
+/// the caller's mode when they return.
 class Tracer {
  public:
   using Point = std::array<double, 3>;

@@ -139,6 +139,19 @@ TEST_F(Render, WarningsAreSaidOnce) {
   }
 }
 
+TEST_F(Render, ShadowCatchersUnderOtherLightsAreWarnedAbout) {
+  folder_.write("a.obj",
+                "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl lamp\nf 1 2 3\n"
+                "usemtl ground\nf 1 3 2\n");
+  for (const char* emission : {"0", "1"}) {
+    folder_.write("a.mtl",
+                  "newmtl ground\nillum 10\nnewmtl lamp\nKe 0 0 " + std::string(emission) + "\n");
+    EXPECT_EQ(contains(render({"a.obj", "--size", "4x4", "--engine", "cpu", "--quiet"}).err,
+                       "warning: illum 10: matches the background under point lights alone\n"),
+              *emission == '1');
+  }
+}
+
 TEST_F(Render, ManyWarningsAreCounted) {
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (int i = 1; i <= 12; ++i) text += "usemtl m" + std::to_string(i) + "\nf 1 2 3\n";

@@ -89,8 +89,8 @@ class CoreUnit {
 /// reports Error::kMemory (a line that does not exist) or Error::kCycle.
 class CoreIntersector : public Intersector {
  public:
-  /// `bvh` must outlive this object; `image` is its memory image. Intersectors of one thread can
-  /// share a core.
+  /// `bvh` must outlive this; `image` is its memory image. A thread's intersectors may share a
+  /// core.
   CoreIntersector(const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
                   std::shared_ptr<CoreUnit> core)
       : Intersector({.wants_sources = true}),

@@ -100,8 +100,7 @@ class ImageWriter {
   }
 
  private:
-  // Triangles share a leaf if their boxes are hardly smaller than the leaf's box: rays that enter
-  // one box usually enter all.
+  // Triangles share a leaf if their boxes are hardly smaller than its box: rays enter most of them.
   static constexpr std::uint32_t kMostInLeaf = 4;
   static constexpr double kSameBox = 0.8;
 

@@ -122,7 +122,9 @@ class Scene(_raygate.Scene):
         middle, unless all vertices are float32 numbers around 0: see rounded_rays. Directions have any length; (0, 0, 0) hits nothing.
         limits: shape (N,), or one number for all rays; none by default. threads: 1 to 1024, one per processor by default. hits:
         "nearest", a row for each ray; "any", a row for each ray that says whether it hits anything (faster); "all", a row for each hit of
-        each ray, near before far, at equal t the lower triangle first.
+        each ray, near before far, at equal t the lower triangle first. A ray exactly through an edge or a vertex counts as tilted by an
+        infinitesimal angle towards +x, and by smaller ones towards +y and +z. So where it crosses a closed mesh it hits one triangle, where
+        it touches a silhouette none or two, and of an open mesh's border one side. A triangle in a plane with the origin is never hit.
 
         columns: one name or several; by default all but material and side. "any" has only ray, hit and doubts, by default ray
         and hit. ray, triangle, object, material: numbers from 0. hit: 1 or 0. t: relative error at most 2^-33. point (fields x,

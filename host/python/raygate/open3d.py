@@ -5,8 +5,8 @@
     scene.cast_rays([[0, 0, 5, 0, 0, -1]])["t_hit"]
 
 Open3D need not be installed. Arguments and answers are NumPy arrays, or what NumPy makes an array of, instead of tensors. Differences
-from Open3D: positions, rays, distances and points are float64. A ray through an edge or a vertex of a closed mesh hits it once, so counts
-of intersections are right, and one sample tells inside from outside. Invalid arguments raise InputError.
+from Open3D: positions, rays, distances and points are float64. Where a ray crosses a closed mesh at an edge or a vertex it hits it once
+(see Scene.trace), so counts of crossings are right, and one sample tells inside from outside. Invalid arguments raise InputError.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
     mesh.ray = raygate.trimesh.RayMeshIntersector(mesh)
 
 It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector and does not need trimesh. Its answers differ in these points: a ray
-through an edge or a vertex of a closed mesh hits the mesh once, not once for each triangle there; all hits of a ray are found, however
+that crosses a closed mesh at an edge or a vertex hits it once, not once for each triangle there; all hits of a ray are found, however
 near each other they are; a point on the surface may count as inside or outside. mesh.copy() has trimesh's own intersector again.
 mesh.nearest stays trimesh's; mesh.ray.scene.closest() is raygate's.
 """
