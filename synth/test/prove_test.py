@@ -24,8 +24,7 @@ FAULTS = {
         ("old_open ? old_triangle_q : triangle_q", "open ? triangle_q : old_triangle_q"),
         ("forward ? low_q : nearest_low", "is_over_q ? low_q : nearest_low"),
         ("(high_q < {1'b0, old_t_max_q})", "(high_q <= {1'b0, old_t_max_q})"),  # of two equally near hits, keeps the later hit
-        ("if (test_q && !same) counts", "if (test_q) counts"),
-        ("here_q < CountWidth'(Queue)", "here_q <= CountWidth'(Queue)")]),
+        ("if (test_q && !same) counts", "if (test_q) counts"), ("here_q < CountWidth'(Queue)", "here_q <= CountWidth'(Queue)")]),
     "leaves": ("primitive_fetch", [
         ("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
         ("fire & last & (remaining == '0)", "fire & (remaining == '0)"),
@@ -41,15 +40,12 @@ FAULTS = {
         (".requests_i(~pending_ways_q)", ".requests_i({Ways{1'b1}})")]),
     "stack": ("traversal", [
         ("& (~full | free);", ";"),
-        (" | (level_q == LevelWidth'(Levels))", ""),
-        ("if (free && !full) refused_q <= '0;", "")]),
-    "writer_128": ("axi_write_manager", [
-        ("(axi_wready_i & axi_wlast_o)", "axi_wready_i"), ("next_q[0], 5'd0}", "1'b0, 5'd0}"),
+        (" | (level_q == LevelWidth'(Levels))", ""), ("if (free && !full) refused_q <= '0;", "")]),
+    "writer_128": ("axi_write_manager", [("(axi_wready_i & axi_wlast_o)", "axi_wready_i"), ("next_q[0], 5'd0}", "1'b0, 5'd0}"),
         ("some_room & address_free", "address_free")]),
     "contexts": ("ray_retire", [
         (".Reserve(1)", ".Reserve(0)"),
-        ("known_q <= ending_o;", "known_q <= some;"),
-        ("active_q & ~busy_i", "active_q")]),
+        ("known_q <= ending_o;", "known_q <= some;"), ("active_q & ~busy_i", "active_q")]),
     "exact_accumulator_24": ("exact_accumulator", [
         ("& sum_q[DigitWidth-1];", "& sum_q[DigitWidth];"),
         ("$signed(sum_q) >>> DigitWidth", "sum_q >> DigitWidth"),
