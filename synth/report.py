@@ -53,7 +53,7 @@ def legend(records: list[dict]) -> str:
     """Returns the meaning of the tables' figures and flows, one per line."""
     flows = [flow for flow in FLOWS if any(record["flow"] == flow for record in records)]
     parts = ["um2 / ns: of the cells alone (NAND2X1: 96 in 0.35 um); the slowest path at the typical corner, before layout",
-             "Paths that no operands sensitise count, too, so a carry-skip adder looks slower than it is."] if flows else []
+             "ns: paths that no operands sensitise count, too, so a carry-skip adder looks slower than it is"] if flows else []
     if any("mhz" in record for record in records):
         parts.append("LUTs / MHz: placed and routed between registers; the median of the seeds")
     return "\n".join([*parts, *(f"{flow}: {FLOWS[flow]}" for flow in flows)]) + "\n"

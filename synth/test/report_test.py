@@ -13,7 +13,7 @@ class Legend(unittest.TestCase):
     def test_explains_the_columns_that_are_there(self) -> None:
         cells = [{"flow": flow, "delay_ns": 1.0} for flow in ("fast", "cells")]
         said = report.legend(cells).splitlines()
-        self.assertEqual([line.split(":")[0] for line in said], ["um2 / ns", "cells", "fast"])
+        self.assertEqual([line.split(":")[0] for line in said], ["um2 / ns", "ns", "cells", "fast"])
         placed = report.legend([{"flow": "placed", "mhz": 98.0}]).splitlines()
         self.assertEqual([line.split(":")[0] for line in placed], ["LUTs / MHz"])
 
