@@ -331,7 +331,7 @@ def first_rows() -> list[Row]:
 
 
 # Formats by name: exponent and fraction bits.
-FORMATS = {"binary32": (8, 23), "binary16": (5, 10), "bfloat16": (8, 7)}
+FORMATS = {"binary32": (8, 23), "binary16": (5, 10)}
 ARITHMETICS = {"structural": 0, "behavioural": 1}  # values of arith_pkg::arith_e
 
 

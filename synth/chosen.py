@@ -51,7 +51,7 @@ def design(given: argparse.Namespace) -> catalogue.Design:
     """Returns the design that `given.top` and the options describe."""
     parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width, "Exact": given.exact}
     kind = given.adder or ("graded" if given.groups else "")
-    own = kind.endswith(".sv") and f"{given.top}-{pathlib.Path(kind).stem}"  # a user's file, in place of the prefix adder
+    own = f"{given.top}-{pathlib.Path(kind).stem}" if kind.endswith(".sv") else ""  # a user's file, in place of the prefix adder
     kind = "prefix" if own else kind
     kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]
     if kind and kind not in kinds:
@@ -61,5 +61,5 @@ def design(given: argparse.Namespace) -> catalogue.Design:
             raise ValueError(f"the groups have {sum(given.groups)} bits together, the adder {given.width}")
         parameters["Width"] = sum(given.groups)
     return catalogue.design(
-        given.top, own or "", adder=kind, widths=given.groups, look_ahead=None if given.look_ahead is None else bool(given.look_ahead),
+        given.top, own, adder=kind, widths=given.groups, look_ahead=None if given.look_ahead is None else bool(given.look_ahead),
         **{name: value for name, value in parameters.items() if value is not None})

@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// Set of values h of PathState::specular_history, as bits h. kUnknownHistories: not found yet.
+/// Set of specular histories (see PathState): bit h is history h. kUnknownHistories: not found yet.
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 
