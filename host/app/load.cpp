@@ -56,7 +56,6 @@ Framing frame_picture(const CameraRequest& request, const Scene& scene, double a
   const auto [azimuth, elevation] =
       request.angles.value_or(std::pair(kDefaultAzimuth, kDefaultElevation));
   const View view{azimuth, elevation, request.up.value_or(scene.up)};
-  // In the scene's coordinates.
   CameraSetting setting = given ? *given : frame_scene(scene, aspect, fov, view);
   if (given) {
     setting.eye -= scene.origin;

@@ -202,8 +202,9 @@ void run(const Options& options) {
   report.triangles = triangle_count(scene);
   report.rounding = scene.rounding;
   const std::string digest = digest_of(scene);  // without default lights and ground
-  const bool is_lit = scene.environment || !scene.directional_lights.empty() ||
-                      std::ranges::any_of(scene.materials, emits);
+  bool is_lit = scene.environment || !scene.directional_lights.empty() ||
+                std::ranges::any_of(scene.materials, emits);
+  for (const PointLight& light : scene.lights) is_lit = is_lit || light.spot;
   if (is_lit && std::ranges::count(scene.materials, 10, &Material::illumination_model) > 0) {
     scene.warnings.emplace_back("illum 10: matches the background under point lights alone");
   }
