@@ -19,7 +19,7 @@ endif
 
 synth: ## hardware: area and time: make synth [ALL=1 PUBLISH=1 | TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ... | TOP=fp_adder VERILOG=1: one file of plain Verilog | DATASHEET=1: hw/modules.md]
 	@$(SETUP) synth
-	@$(if $(filter float_peers,$(TOP)),$(SETUP) lab)
+	@$(if $(filter float_peers,$(TOP)),$(SETUP) lab,$(if $(filter %.sv,$(ADDER)),$(SETUP) lint))
 ifdef DATASHEET
 	@$(PYTHON) -m synth.datasheet
 else ifdef VERILOG
@@ -58,5 +58,5 @@ else
 endif
 
 layout: ## hardware: place, route, time, draw: make layout [TOP=adders | multipliers | cores | unit | MODULE SEEDS=3 | PUBLISH=1]
-	@$(SETUP) layout
+	@$(SETUP) layout$(if $(filter %.sv,$(ADDER)), && $(SETUP) lint)
 	@$(PYTHON) -m synth.layout $(call options,$(design_words) FLOW DENSITY ASPECT SEEDS) --jobs $(SYNTH_JOBS)
