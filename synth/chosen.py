@@ -51,7 +51,8 @@ def design(given: argparse.Namespace) -> catalogue.Design:
     """Returns the design that `given.top` and the options describe."""
     parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width, "Exact": given.exact}
     kind = given.adder or ("graded" if given.groups else "")
-    own = f"{given.top}-{pathlib.Path(kind).stem}" if kind.endswith(".sv") else ""  # a user's file, in place of the prefix adder
+    words = given.top, pathlib.Path(kind).stem, *(f"{name}{value}" for name, value in parameters.items() if value is not None)
+    own = "-".join(words) if kind.endswith(".sv") else ""  # a user's file, in place of the prefix adder
     kind = "prefix" if own else kind
     kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]
     if kind and kind not in kinds:

@@ -161,9 +161,9 @@ class Chosen(unittest.TestCase):
     def test_a_file_of_the_user_replaces_the_prefix_adder(self) -> None:
         given = argparse.Namespace(adder="host/lab/exercises/kogge_stone_adder.sv")
         with chosen.replaced(given):
-            mine = design("--top=adder", f"--adder={given.adder}")
+            mine = design("--top=adder", f"--adder={given.adder}", "--width=24")
             self.assertIn("kogge_stone_adder", "".join(file.read_text() for file in mine.sources()))
-        self.assertEqual(mine.name, "adder-kogge_stone_adder")
+        self.assertEqual(mine.name, "adder-kogge_stone_adder-Width24")
         self.assertNotIn("kogge_stone_adder", "".join(file.read_text() for file in mine.sources()))
 
     def test_groups_of_a_multiplier_are_as_in_the_rtl(self) -> None:
