@@ -1,6 +1,6 @@
 """`python3 -m sim.mutate BUILD`: how many single faults of the hardware its tests catch.
 
-For each unit: a netlist with faults (netlist.py) runs the unit's own tests with one fault after the other. A fault that
+For each unit: a netlist with faults (netlist.py) runs the unit's own tests, the fastest first, with one fault after the other. A fault that
 survives is no fault if ABC's equivalence check shows that it changes no output for any input. The remaining faults are listed, with their
 lines in hw/. `--at-most PERCENT`: checks that no more survive, and stops when that is known."""
 
@@ -76,22 +76,34 @@ def place(fault: str) -> str:
     return f"{source(fault) or '?'} {words['mode']} {words['port']}[{words['portbit']}]"
 
 
-def test_passes(program: pathlib.Path, fault: int, limit: int) -> tuple[bool, float]:
-    """Returns whether a unit's test passes with this fault (0: no fault) within `limit` seconds of processor time, and these seconds."""
-    test = subprocess.Popen(["prlimit", f"--cpu={limit}", program, "--gtest_fail_fast", "--gtest_throw_on_failure"],
-                            env=os.environ | {"RAYGATE_MUTANT": str(fault)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, usage = os.wait4(test.pid, 0)
-    test.returncode = os.waitstatus_to_exitcode(status)
-    return test.returncode == 0, usage.ru_utime + usage.ru_stime
+def run_test(program: pathlib.Path, test: str, fault: int, limit: int) -> tuple[bool, float]:
+    """Returns whether one test of a unit passes with this fault (0: no fault) within `limit` seconds of processor time, and these seconds."""
+    child = subprocess.Popen(["prlimit", f"--cpu={limit}", program, f"--gtest_filter={test}", "--gtest_throw_on_failure"],
+                             env=os.environ | {"RAYGATE_MUTANT": str(fault)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    return child.returncode == 0, usage.ru_utime + usage.ru_stime
+
+
+def timed_tests(program: pathlib.Path) -> list[tuple[str, int]]:
+    """Returns a unit's tests, fastest first, each with a limit of seconds: a test that runs longer has detected a fault, which makes it hang.
+    Raises ValueError if a test fails without a fault."""
+    suite, times = "", {}
+    for line in run([program, "--gtest_list_tests"]).splitlines():
+        if not line.startswith(" "):  # SUITE. or, in front of the first suite, a remark
+            suite = line.split()[0]
+            continue
+        test = suite + line.split()[0]
+        passes, times[test] = run_test(program, test, 0, 3600)
+        if not passes:
+            raise ValueError(f"{program}: {test} fails without a fault")
+    return [(test, round(2 + 1.5 * times[test])) for test in sorted(times, key=lambda test: times[test])]
 
 
 def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
-    """Returns a unit's faults, numbered from 1, that its test does not detect."""
-    passes, seconds = test_passes(program, 0, 3600)
-    if not passes:
-        raise ValueError(f"{program}: fails without a fault")
-    limit = round(2 + 1.5 * seconds)  # a test that runs longer counts as detection: the fault made it hang
-    return [fault for fault in range(1, faults + 1) if test_passes(program, fault, limit)[0]]
+    """Returns a unit's faults, numbered from 1, that its tests do not detect."""
+    tests = timed_tests(program)
+    return [fault for fault in range(1, faults + 1) if all(run_test(program, test, fault, limit)[0] for test, limit in tests)]
 
 
 def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, at_most: float) -> Outcome:
