@@ -144,7 +144,8 @@ PAGE = """# Run time against error, from the adder to the picture
 Pictures of {{ first[0].width }} x {{ first[0].height }} pixels, rendered by the reference model of each variant. Variants named raw ignore doubts, the others resolve them.
 
 * **wrong tests**: tests of camera rays decided differently from exact arithmetic. **P**: error in binary32 ulps, of correctly decided rays.
-* **FLIP**: mean perceptual difference from binary32's picture; a dash means equal pictures. Raw variants shade their own P, the others only if its error is within `--point-error`.
+* **FLIP**: mean perceptual difference from binary32's picture; a dash means equal pictures. Variants shade the P that they computed;
+non-raw ones only if its error is within `--point-error`.
 * **area**, **period**: by `make synth`, OSU 0.35 um, cells alone; variants without these figures are only in the CSV. **clocks** (CSV only):
 tests times simulated clocks per test; a star marks variants without hardware, for which binary32's rate is used.
 

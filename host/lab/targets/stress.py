@@ -75,7 +75,7 @@ def failures(rows: list[dict]) -> list[str]:
 PAGE = """# Stress test
 
 **{{ "Passed" if passed else "FAILED" }}**: {{ suites|length }} suites, {{ "{:,}".format(cases.exact) }} cases, {{ "{:,}".format(cases.binary64) }} of them with binary64 vertices, {{ "{:,}".format(cases.simulated) }} by the simulated hardware, by `{{ machine.command }}`,
-{{ "{:,.0f}".format(suites|sum("seconds")) }} s of processor time. Rays that a suite wrongly claims to start inside a mesh: {{ suites|sum("broken_claims") }}.
+{{ "{:,.0f}".format(suites|sum("seconds")) }} s of processor time. Rays that a suite places inside a mesh but that start outside: {{ suites|sum("broken_claims") }}.
 
 A case is a ray and a triangle; a subject is an engine, a variant or another hit test. All subjects see the same cases, slow subjects only the first ones
 of each suite; cases are counted once. Suites `... 64` have binary64 vertices and, for half of the origins, binary64 rays. Ray cores and variants skip
