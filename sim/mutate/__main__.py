@@ -101,9 +101,14 @@ def timed_tests(program: pathlib.Path) -> list[tuple[str, int]]:
 
 
 def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
-    """Returns a unit's faults, numbered from 1, that its tests do not detect."""
-    tests = timed_tests(program)
-    return [fault for fault in range(1, faults + 1) if all(run_test(program, test, fault, limit)[0] for test, limit in tests)]
+    """Returns a unit's faults, numbered from 1, that its tests do not detect. Reports progress on stderr."""
+    tests, survivors = timed_tests(program), []
+    for fault in range(1, faults + 1):
+        if all(run_test(program, test, fault, limit)[0] for test, limit in tests):
+            survivors.append(fault)
+        if fault % max(1, faults // 10) == 0:
+            print(f"{program.name}: {fault} of {faults} faults tested, {len(survivors)} not caught", file=sys.stderr, flush=True)
+    return survivors
 
 
 def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, at_most: float) -> Outcome:
