@@ -5,7 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import brought, catalogue, chosen, cores, float_peers, grading, measure, prove, report, runner, store, structure, tools
+from synth import brought, catalogue, chosen, cores, float_peers, grading, measure, prove, report, runner, store, structure, tables, tools
 
 
 def arguments() -> argparse.Namespace:
@@ -33,13 +33,25 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
              ("small", "parts") if design.clock else ("area", "small", "fast"))
     plan = dict.fromkeys(targets.names, catalogue.PLACED)
     plan |= {library.name: flows for library in catalogue.LIBRARIES if library.name in plan}
-    rows = [catalogue.Row(design.name, design, plan)]
+    designs, delays = [design], []
     if cells:
+        try:
+            prove.adds(design)
+            print("Proof: it adds, for all operands (SAT).\n")
+        except tools.Refuted as error:
+            raise tools.ToolFailed(brought.in_words("ADDER", "proof that it adds", error.values)) from error
         width = dict(design.parameters).get("Width", grading.WIDTH)
         others = [catalogue.design("adder", adder=kind, look_ahead=False if kind in ("uniform", "graded") else None, Width=width)
-                  for kind in ("ripple", "uniform", "graded", "prefix", catalogue.BEHAVIOURAL)
-                  if kind != "prefix" or not cores.replaced]  # a user's file stands in for the prefix adder
-        rows += [catalogue.Row(design.name, other, plan) for other in others if other.name != design.name]
+                  for kind in ("ripple", "uniform", "graded", *(() if cores.replaced else ("prefix",)), catalogue.BEHAVIOURAL)]
+        designs += [other for other in others if other.name != design.name]
+    rows = []
+    for one in designs:
+        parts = structure.hardware(module := structure.netlist(one)) if cells else {}
+        gates_only = not parts.get("full_adder") and not parts.get("multiplexer")
+        rows.append(catalogue.Row(design.name, one, {target: tuple(flow for flow in how if flow != "cells" or not gates_only)
+                                                     for target, how in plan.items()}))
+        if cells and not parts["gate"]:  # full adders and multiplexers alone: the model applies
+            delays.append([one.name, *(f"{structure.delay(module, counting):g}" for counting in structure.COUNTINGS)])
     records, failures, _ = report.measured_tables(rows, targets)
     print(report.legend(records))
     records = [record for record in records if record["design"] == design.name]
@@ -52,17 +64,8 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
         ends = f", from {best['from']} to {best['to']}" if "from" in best else ""
         print(f"Critical path, {report.title(best['target'])}, {best['flow']}{ends}:\n")
         print(report.path_table(best))
-    if cells and structure.hardware(module := structure.netlist(design))["gate"] == 0:  # else the model does not apply
-        print("Full-adder delays: " + "; ".join(
-            f"{structure.delay(module, counting):g} ({counting.title})" for counting in structure.COUNTINGS))
-    if cells:
-        try:
-            prove.adds(design)
-            print("Proof: it adds, for all operands (SAT).")
-        except tools.Refuted as error:
-            failures.append(brought.in_words("ADDER", "proof that it adds", error.values))
-        except tools.ToolFailed as error:
-            failures.append(f"proof that it adds: {error}")
+    if delays:
+        print(tables.markdown(["full-adder delays", *(counting.title for counting in structure.COUNTINGS)], delays))
     return runner.status(failures)
 
 

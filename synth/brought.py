@@ -186,7 +186,8 @@ def _elaborated(top: str, file: pathlib.Path) -> tuple[list[str], dict[str, str]
     for error in compilation.getAllDiagnostics():
         if error.isError():
             at = error.location
-            raise ValueError(f"{urllib.parse.unquote(place.getFileName(at))}:{place.getLineNumber(at)}:{place.getColumnNumber(at)}: "
+            name = urllib.parse.unquote(place.getFileName(at)).removeprefix(f"{file.parent}/")  # slang adds the folder of the copy
+            raise ValueError(f"{name}:{place.getLineNumber(at)}:{place.getColumnNumber(at)}: "
                              f"{slang.diagEngine.formatMessage(error)}")
     body = compilation.getRoot().topInstances[0].body
     directions = {"In": "input", "Out": "output"}

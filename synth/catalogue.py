@@ -299,8 +299,7 @@ def report_rows() -> list[Row]:
     rows.append(Row(section, design("booth_multiplier", "booth-graded-ripple-groups", "graded",
                                     look_ahead=False, Width=24),
                     {"osu035": ("cells", "area", "small", "fast", "faster")}))
-    rows.append(Row(section, design("booth_multiplier", "booth-graded-14-rows", "graded", Width=24,
-                                    ConstantRow="1'b1"), twice))
+    rows.append(Row(section, design("booth_multiplier", "booth-graded-14-rows", "graded", Width=24, ConstantRow="1'b1"), twice))
     rows.append(Row(section, design("multiplier", "multiplier-behavioural", BEHAVIOURAL, Width=24),
                     {**everywhere, "osu035": ("small", "fast", "faster")}))
     rows += [Row("binary32 cores", design(top, top.replace("_", "-"), "graded"), {"osu035": ("area", "small", "fast"), "osu018": ("fast",)})

@@ -21,6 +21,8 @@ def whole(least: int, most: int) -> Callable[[str], int]:
 
 def whole_numbers(text: str) -> list[int]:
     """Parses an option's value: comma-separated whole numbers from 1 to 255."""
+    if not re.fullmatch(r"\d+(,\d+)*", text):
+        raise argparse.ArgumentTypeError(f"expected whole numbers separated by commas, got {text!r}")
     return [whole(1, 255)(number) for number in text.split(",")]
 
 

@@ -28,8 +28,7 @@ combinational. If latency or throughput is empty, the module's header has no suc
 def header(text: str) -> str:
     """Returns the comment at the beginning of a file as one text, with a newline between paragraphs."""
     lines = [line[2:].strip() for line in re.match(r"(?://.*\n)*", text)[0].splitlines()]
-    return re.sub(r"\s*\n\s*\n\s*|(?<=\S)\n(?=\S)",
-                  lambda gap: " " if gap[0] == "\n" else "\n", "\n".join(lines)).strip()
+    return re.sub(r"\s*\n\s*\n\s*|(?<=\S)\n(?=\S)", lambda gap: " " if gap[0] == "\n" else "\n", "\n".join(lines)).strip()
 
 
 def sentences(text: str) -> list[str]:

@@ -59,8 +59,7 @@ def joints(cut: Cut, stages: str, uncut: str) -> list[str]:
     for wire, row in re.findall(rf"\(define-fun \|{cut.top}_n (\S+gen_row\[(\d+)\]\.\w+_q)\|", stages):
         inside = f"uncut_n {wire}|"
         if f"(define-fun |{inside}" in uncut and "valid" not in wire:
-            found.setdefault(int(row), []).append(
-                f"(= (|{inside} state) (|{cut.top}_n {wire}| state_{int(row) + 2}))")
+            found.setdefault(int(row), []).append(f"(= (|{inside} state) (|{cut.top}_n {wire}| state_{int(row) + 2}))")
     return [f"(and {' '.join(found[row])})" for row in sorted(found)]
 
 

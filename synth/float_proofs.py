@@ -67,10 +67,8 @@ OPERATIONS = {
     "srt_ends": Operation(
         "srt_divider", "what enters the rows, remainder and quotient, around any rows",
         ("srt",), ("srt_row", "srt_first_row"), "Width $S Rows $ROWS"),
-    "decode": Operation("", "a number is its significand by a power of two",
-                        ("format", "multiply")),
-    "sticky": Operation("", "what is left of a quotient may count as half a place",
-                        ("format", "multiply", "divide")),
+    "decode": Operation("", "a number is its significand by a power of two", ("format", "multiply")),
+    "sticky": Operation("", "what is left of a quotient may count as half a place", ("format", "multiply", "divide")),
     "compare": Operation("fp_compare", "equal, less, unordered, flags", ("format", "compare")),
 }
 
@@ -131,8 +129,7 @@ class FloatProof:
 
         def digits(first: str, sign: str) -> str:
             """Returns the concatenated quotient digits of one sign, the first digit most significant."""
-            return functools.reduce(lambda upper, row: f"(concat {upper} free_{sign}_o_{row})",
-                                    range(1, rows + 1), first)
+            return functools.reduce(lambda upper, row: f"(concat {upper} free_{sign}_o_{row})", range(1, rows + 1), first)
 
         return {
             # format
@@ -224,8 +221,7 @@ def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
 def proven(one: FloatProof) -> tuple[dict, bool]:
     """Proves a claim. Raises Refuted, with the operands, if the claim does not hold, and ToolFailed if the solver gives up."""
     folder = store.OUT / "proofs" / f"float.{one.name}"
-    wanted = store.key([*one.sources(), smt.FREE, FLOAT / "solve.py"],
-                       yosys.version(), smt.version(), one.parameters, one.texts())
+    wanted = store.key([*one.sources(), smt.FREE, FLOAT / "solve.py"], yosys.version(), smt.version(), one.parameters, one.texts())
 
     def work() -> dict:
         top = OPERATIONS[one.operation].top
@@ -233,8 +229,7 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
         text, wires = query(one, model)
         if smt.solve(folder / "assumption.smt2", text + "(assert assumed)\n")["answer"] != "sat":
             raise tools.ToolFailed(f"{one.name}: what it assumes cannot be")
-        answer = smt.solve(folder / "query.smt2",
-                       text + "(assert assumed)\n(assert (not claimed))\n", tuple(wires))
+        answer = smt.solve(folder / "query.smt2", text + "(assert assumed)\n(assert (not claimed))\n", tuple(wires))
         if answer["answer"] == "sat":
             raise tools.Refuted(one.name, answer["values"])
         if answer["answer"] != "unsat":

@@ -13,8 +13,7 @@ VECTORS = 125_000  # test vectors per specification
 BATCH = 5000  # vectors evaluated in one query
 
 # The operations that MPFR computes for each specification: number in FloatOp of sim/fp/float_format.h -> argument `second` in vectors/.
-ASKED = {"add": {0: "false", 1: "true"}, "multiply": {2: "false"}, "divide": {3: "false"},
-         "compare": {4: "false", 6: "true"}}
+ASKED = {"add": {0: "false", 1: "true"}, "multiply": {2: "false"}, "divide": {3: "false"}, "compare": {4: "false", 6: "true"}}
 CODES = {"binary16": ("<H", "<e", "<f", "<I"), "binary32": ("<I", "<f", "<d", "<Q")}
 
 
@@ -50,8 +49,7 @@ def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]
                 f"{wide_word(a, one.format)} {wide_word(b, one.format)})")
 
     def evaluate(cases: list[str]) -> dict:
-        return smt.solve(folder / "cases.smt2",
-                     text + "(assert (not (and true\n" + "\n".join(cases) + ")))\n")
+        return smt.solve(folder / "cases.smt2", text + "(assert (not (and true\n" + "\n".join(cases) + ")))\n")
 
     def work() -> dict:
         maker = folder / "mpfr_vectors"

@@ -142,7 +142,8 @@ def adder_section(kind: str, given: argparse.Namespace) -> str:
     widths = ", ".join(str(len([*group])) for _, group in itertools.groupby(select))
     cells = collections.Counter(SYMBOLS.get(cell["type"], cell["type"]) for cell in drawing.cells)
     slowest = max(drawing.arrival.get(bit, 0.0) for bit in outputs)
-    return (f"<section><h3>{html.escape(KINDS[kind])}</h3><p>{given.a} + {given.b} + {given.carry} = <b>{word(outputs, values)}</b>. "
+    title = "Carry select, your groups." if kind == "graded" and given.groups else KINDS[kind]
+    return (f"<section><h3>{html.escape(title)}</h3><p>{given.a} + {given.b} + {given.carry} = <b>{word(outputs, values)}</b>. "
             f"{f'Group widths, lowest first: {widths}. ' if widths else ''}Slowest path (bold): {slowest:g} full-adder delays. Cells: "
             f"{', '.join(f'{count} {name}' for name, count in sorted(cells.items()))}.</p>{drawing.svg(values)}</section>")
 

@@ -23,7 +23,7 @@ class Counting:
 
 COUNTINGS = [
     Counting("multiplexer = 1", 1, 1),
-    Counting("multiplexer = 1, the one that selects the sum bit = 0", 1, 0),
+    Counting("the paper's: 1, but 0 at a sum bit", 1, 0),
     Counting("multiplexer = 1/2", 0.5, 0.5),
     Counting("multiplexer = 0", 0, 0),
 ]

@@ -5,6 +5,7 @@ SYNTH_JOBS ?= $(if $(filter file,$(origin JOBS)),2,$(JOBS))
 
 # $(call options,...): command-line options for those of the listed variables that are set: --width='48' for WIDTH=48.
 options = $(foreach name,$(1),$(if $($(name)),--$(subst _,-,$(name))='$($(name))'))
+
 design_words = TOP ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT TARGETS PUBLISH
 
 # Options for a single design need TOP. PARAMS needs VERILOG.

@@ -494,7 +494,7 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
         return settings.max_depth && kDepths.contains(*settings.max_depth);
       },
       [&] { return std::to_string(settings.depth()); }, kEverywhere);
-  table.choice<bool>("--caustics", "auto|off", "path: light paths find caustics ({})",
+  table.choice<bool>("--caustics", "auto|off", "path: caustics by light paths, unless --error ({})",
                      settings.caustics, {{"auto", true}, {"off", false}}, kInExr | kInPython);
   table.number("--threshold", "X", "whitted: ignore rays that weigh less ({})", settings.threshold,
                Range{0.0, 1.0}, kInExr | kInPython | kInSceneFile | kInPage);

@@ -167,11 +167,11 @@ std::string to_text(const Report& report, const Options& options) {
                        " per ray" + clocks + ": " + rate(hit.tests, render.wall_seconds, "tests"));
   if (const RenderSettings& asked = options.render; asked.error > 0.0) {
     const std::uint64_t pixels = asked.window.pixels(), most = std::uint64_t(asked.samples);
-    text +=
-        row("samples", format_fixed(100.0 - 100.0 * ratio(render.spare_samples, pixels * most), 1) +
-                           " % of " + format_count(most) + " per pixel; --error needs more for " +
-                           format_fixed(100.0 * ratio(render.unfinished_pixels, pixels), 1) +
-                           " % of the pixels");
+    text += row(
+        "samples",
+        format_fixed(100.0 - 100.0 * ratio(render.spare_samples, pixels * most), 1) + " % of " +
+            format_count(most) + " per pixel; --error needs a higher --spp for " +
+            format_fixed(100.0 * ratio(render.unfinished_pixels, pixels), 1) + " % of the pixels");
   }
   if (options.engine == Engine::kCheck) {
     text += row("check", "rtl and cpu agreed on all " + format_count(render.rays) + " rays");

@@ -105,8 +105,8 @@ def table(records: list[dict]) -> list[list[object]]:
         delays = [*(f"{ns:.2f}" for ns in (min(spread), got["wires_ns"], max(spread))),
                   f"{got['wires_ns'] / got['cells_ns']:.3f}"] if spread else ["-"] * 4
         rows.append([got["job"].design.name, got["job"].flow, got["cells"], f"{got['area']:,}", f"{got['core']:,}",
-                     f"{got['area'] / got['core']:.2f}", f"{got['wire_um'] / 1000:.1f}",
-                     f"{got['wire_pf']:.2f}", f"{got['cells_ns']:.2f}", f"{got['guess_ns']:.2f}", *delays,
+                     f"{got['area'] / got['core']:.2f}", f"{got['wire_um'] / 1000:.1f}", f"{got['wire_pf']:.2f}", f"{got['cells_ns']:.2f}",
+                     f"{got['guess_ns']:.2f}", *delays,
                      " ".join("not routed" if count is None else str(count) for count in got["failed"])])
     return rows
 
@@ -134,7 +134,7 @@ def main() -> int:
         records, failures = measure(wanted(given), given.jobs)
         OUT.mkdir(parents=True, exist_ok=True)
         rows, pictures = table(records), [draw(got) for got in records]
-    report = OUT / f"report-{given.top or 'all'}-{given.targets}.md"
+    report = OUT / f"report-{given.top or 'all' if given.top in (None, *SECTIONS) else chosen.design(given).name}-{given.targets}.md"
     text = tables.markdown(HEADS, rows)
     report.write_text("\n".join(["# Layouts\n", text, *(f"![{name}]({name}.png)\n" for name in pictures)]))
     if given.publish:
@@ -146,7 +146,7 @@ def main() -> int:
             published = tables.RESULTS / f"layout-{name.replace('-osu035', '')}.png"
             if published.exists():  # the other layouts have no published picture
                 shutil.copy(OUT / f"{name}.png", published)
-    print(f"{text}\nReport: {report.relative_to(tools.ROOT)}")
+    print(f"{text}\nReport: {report.relative_to(tools.ROOT)}" + (f", picture: {pictures[0]}.png" if len(pictures) == 1 else ""))
     return runner.status(failures) or any(any(got["failed"]) for got in records)
 
 
