@@ -12,7 +12,7 @@ namespace {
 [[noreturn]] void fail(const std::string& what) {
   throw InputError(what +
                    " is not in this program, which was built without Verilator; `make verilate` "
-                   "builds it in, and --engine cpu gives the same bytes");
+                   "builds it in; --engine cpu does not need it");
 }
 
 constexpr const char* kUnit = "the simulated hit-test unit";

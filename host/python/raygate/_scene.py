@@ -156,7 +156,7 @@ class Scene(_raygate.Scene):
         "depth", shape (height, width): float32. "triangle" and "object", shape (height, width): uint32, 4294967295 where nothing is hit.
         eye, target, up: three numbers each, in the file's coordinates; the camera of the scene file by default, or one that sees the
         whole scene. Other keywords are these options of ./render, with its defaults: spp, error, integrator, fov (degrees), depth, seed,
-        filter, caustics, threshold, ambient, threads. Raises InputError, which names the option, for values that cannot be used."""
+        filter, caustics, threshold, ambient, threads; there is no ground. Raises InputError, which names the option, for wrong values."""
         channels, film = self._render(_arrays.point("eye", eye), _arrays.point("target", target), _arrays.point("up", up),
                                       _settings(width=width, height=height, **options))
         return Picture(channels, film)
@@ -168,7 +168,7 @@ class Scene(_raygate.Scene):
         A point is inside if a ray from it crosses surfaces an odd number of times. The count is exact for points rounded as origins are
         by trace(). So the orientation of faces does not matter, a shell within another one is a cavity, and the intersection of two solids
         is outside. If faces are oriented alike, winding_number(points)[0] != 0 is the union of solids. Answers have no meaning for an
-        open surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
+        open surface (trimesh: is_watertight) or a point on one. Raises InputError, naming the point, for inf, NaN, numbers over 2^125."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns="ray", threads=threads)
         return np.asarray(np.bincount(hits["ray"], minlength=len(points)) % 2, np.bool_)

@@ -49,7 +49,7 @@ class Format:
     fraction_bits: int
 
     def __post_init__(self) -> None:
-        if not (2 <= self.exponent_bits <= 11 and 1 <= self.fraction_bits <= 29 and self.width <= 32):
+        if not (isinstance(self.width, int | np.integer) and 2 <= self.exponent_bits <= 11 and 1 <= self.fraction_bits <= 29 and self.width <= 32):
             raise InputError(f"found {self}, expected 2 to 11 exponent bits, 1 to 29 fraction bits and at most 32 bits in all")
 
     @property
@@ -200,8 +200,8 @@ def _results(compute: Callable[..., Array], operands: Sequence[Array], format: F
 
 def _numbers(x: npt.ArrayLike) -> Array:
     """Returns an array; signed integers become float64."""
-    array = _arrays.plain("operand", x)
-    if array.dtype.kind == "i":
+    array = np.array(x, object) if isinstance(x, int) else _arrays.plain("operand", x)
+    if array.dtype.kind in "iO":
         wide = array.astype(np.float64)
         if array.size and (np.abs(wide) >= 2.0 ** 53).any():
             raise InputError(f"found {int(array.flat[np.abs(wide).argmax()])}, expected a whole number below 2^53")
