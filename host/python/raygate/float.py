@@ -49,7 +49,8 @@ class Format:
     fraction_bits: int
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.width, int | np.integer) and 2 <= self.exponent_bits <= 11 and 1 <= self.fraction_bits <= 29 and self.width <= 32):
+        whole = isinstance(self.width, int | np.integer)
+        if not (whole and 2 <= self.exponent_bits <= 11 and 1 <= self.fraction_bits <= 29 and self.width <= 32):
             raise InputError(f"found {self}, expected 2 to 11 exponent bits, 1 to 29 fraction bits and at most 32 bits in all")
 
     @property
@@ -194,8 +195,7 @@ def _results(compute: Callable[..., Array], operands: Sequence[Array], format: F
     rows = compute(*columns, format.exponent_bits, format.fraction_bits, ROUNDINGS.index(rounding), tininess == "after")
     fields = np.dtype([("bits", np.uint32), ("flags", np.uint8)], align=True)
     results = rows.view(fields).reshape(operands[0].shape)
-    flags = results["flags"].copy()
-    return Result(results["bits"].copy()[()], flags if flags.ndim else Flags(int(flags)))
+    return Result(results["bits"].copy()[()], results["flags"].copy() if results.ndim else Flags(int(results["flags"])))
 
 
 def _numbers(x: npt.ArrayLike) -> Array:
