@@ -56,7 +56,7 @@ def equivalent(netlist: pathlib.Path, fault: str) -> bool:
         write = "; ".join(f"design -load both; connect -set mutant 16'd{mutant}; write_aiger {folder}/{name}.aig"
                           for name, mutant in (("sound", 0), ("broken", number)))
         try:
-            run(["prlimit", "--cpu=60", *YOSYS, f"read_rtlil {netlist}.il; {fault}; {gates}; {write}"])
+            run(["prlimit", "--cpu=60:70", *YOSYS, f"read_rtlil {netlist}.il; {fault}; {gates}; {write}"])
         except subprocess.CalledProcessError as error:
             if error.returncode != -signal.SIGXCPU:
                 raise
