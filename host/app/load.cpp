@@ -16,8 +16,7 @@ Scene load(const SceneFile& file, const LoadOptions& options, const EnvironmentS
   std::error_code ignored;
   if (file.obj != file.file && !std::filesystem::exists(file.obj, ignored)) {
     throw InputError(file.file.string() + ": found no " + file.obj.lexically_normal().string() +
-                     ", expected this model, or \"obj\" to name another; `make cpu` "
-                     "makes those of scenes/");
+                     ", expected this model, or \"obj\" to name another; for scenes/: make cpu");
   }
   Scene scene = load_scene(file, options);
   require_numbers(scene, file.file);

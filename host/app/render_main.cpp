@@ -231,7 +231,8 @@ void run(const Options& options) {
   if (!core_files.image.empty()) {
     AtomicFile(core_files.image, image->bytes()).commit();
     print("wrote " + printable(core_files.image.string()) + ", " +
-              format_count(image->lines().size(), "line") + "\n",
+              format_count(image->lines().size(), "line") + ", relative to " +
+              list_text({scene.origin.x, scene.origin.y, scene.origin.z}) + "\n",
           console);
   }
   if (!core_files.wave.empty()) {

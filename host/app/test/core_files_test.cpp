@@ -16,9 +16,12 @@ class CoreFiles : public Render {
 TEST_F(CoreFiles, TheMemoryImage) {
   const Outcome dumped = run_core({"--dump-image", "image"});
   ASSERT_EQ(dumped.status, 0) << dumped.err;
-  EXPECT_EQ(dumped.out, "wrote image, 42 lines\n");
+  EXPECT_EQ(dumped.out, "wrote image, 42 lines, relative to 0,0,0\n");
   EXPECT_EQ(folder_.list(), std::vector{"image"s}) << "nothing is rendered";
   EXPECT_EQ(folder_.read("image").size(), 42u * 64u);
+  folder_.write("far.obj", "v 1000.5 0 0\nv 1001.5 0 0\nv 1000.5 1 0\nf 1 2 3\n");
+  const Outcome far = run({"far.obj", "--unit", "core", "--dump-image", "far"});
+  EXPECT_TRUE(contains(far.out, ", relative to 100")) << far.out;
 }
 
 TEST_F(CoreFiles, NoImageThatCannotBeWrittenIsBegun) {
