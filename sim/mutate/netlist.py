@@ -28,8 +28,7 @@ def source(fault: str) -> str:
     return found[1] if found else ""
 
 
-def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: int,
-          around: list[str]) -> int:
+def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: int, around: list[str], within: str = "") -> int:
     """Writes OUT.v, OUT.list and OUT.il; returns the number of faults. Raises ToolFailed and MissingTool."""
     files = dict.fromkeys(file for core in cores.names() for file in cores.files(core))
     kept = " ".join(f"--blackboxed-module {module}" for module in around)
@@ -37,7 +36,7 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     derived = [f"setparam {' '.join(f'-unset {name}' for name in names)} t:{file.stem}" for file in files if file.stem in around
                if (names := re.findall(r"\b(?:localparam [^=;]*?|genvar +)(\w+) *=", file.read_text()))]
     faults = out.with_suffix(".list")
-    chosen_from = 2 * count + 20  # MODES has three of the five modes that Yosys chooses from
+    chosen_from = (8 if within else 2) * count + 20  # MODES has three of the five modes that Yosys chooses from
     # $shiftx becomes $shift: $shiftx would be written as a part-select that may begin outside the word, where Verilator reads other bits.
     yosys.run(f"{yosys.read(files, top, (text.split('=', 1) for text in parameters), kept)}\n"
               "flatten -noscopeinfo\nbwmuxmap\nopt -full\nopt_clean\nchtype -set $shift t:$shiftx\n"
@@ -46,7 +45,7 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     ports = {cell.partition("/")[2]: ports for kind, ports in MEMORIES.items()
              for cell in pathlib.Path(f"{out}.{kind}").read_text().splitlines()}
     lines = [line for line in faults.read_text().splitlines()
-             if re.search(r"-mode (\w+)", line).group(1) in MODES
+             if re.search(r"-mode (\w+)", line).group(1) in MODES and within in line
              and re.search(r"-port (\w+)", line)[1] in ports.get(re.search(r"-cell (\S+)", line)[1], line) and not UNUSED.search(line)][:count]
     lines = [line.replace("mutate ", f"mutate -ctrl mutant 16 {number} ", 1)
              for number, line in enumerate(lines, 1)]
@@ -65,11 +64,12 @@ def main() -> int:
     parser.add_argument("parameters", nargs="*", help="Name=value")
     parser.add_argument("--around", nargs="*", default=[], metavar="MODULE",
                         help="modules that stay as they are in hw/: instances of them in OUT.v")
+    parser.add_argument("--within", default="", metavar="FILE", help="a file of hw/: only faults in its lines")
     parser.add_argument("--count", type=int, default=1000, help="faults (%(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="(%(default)s)")
     given = parser.parse_args()
     try:
-        write(given.out, given.top, given.parameters, given.count, given.seed, given.around)
+        write(given.out, given.top, given.parameters, given.count, given.seed, given.around, given.within)
     except (tools.MissingTool, tools.ToolFailed) as error:
         print(f"sim.mutate.netlist: {error}", file=sys.stderr)
         return 2
