@@ -55,8 +55,8 @@ class ExactResolverTest : public testing::Test {
   void compare(Core& core, std::vector<CoreRay> rays) {
     for (std::uint32_t i = 0; i < rays.size(); ++i) rays[i].tag = i;
     ReferenceCore reference(ReferenceCore::kStackDepth, true);
-    const std::vector<CoreResult> got = words(core, image_->lines(), rays),
-                                  expected = words(reference, image_->lines(), rays);
+    const std::vector<CoreResult> got = words(core, lines_, rays),
+                                  expected = words(reference, lines_, rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       ASSERT_EQ(got[i].error, CoreResult::Error::kNone) << i;
       ASSERT_EQ(got[i].found, expected[i].found) << i;
@@ -73,6 +73,7 @@ class ExactResolverTest : public testing::Test {
   std::vector<Corners> mesh_ = doubled();
   Bvh bvh_{test::scene_of(mesh_)};
   std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
+  std::vector<MemoryLine> lines_ = test::far_lines(*image_);
   Random random_;
   int found_ = 0, without_t_ = 0;
 };
@@ -100,8 +101,8 @@ TEST_F(ExactResolverTest, LimitsAndFirstHitsAreTheReferences) {
     CoreRay& sent = rays.emplace_back(CoreRay{.ray = ray});
     sent.any_hit = random_.below(4) == 0;
     for (std::uint32_t* const id : {&sent.skip_id, &sent.source_id}) {
-      *id = image_->line_of(
-          static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size()))));
+      *id = test::kFar + image_->line_of(static_cast<std::uint32_t>(
+                             random_.below(static_cast<int>(mesh_.size()))));
     }
     const bool is_hit = hits_triangle(ray, corners);
     sent.t_max =
@@ -180,7 +181,7 @@ TEST_F(ExactResolverTest, LongWorkIsWaitedFor) {
     fan.push_back({glm::vec3(1, 1, 1.5f), corner(n), corner(n + 1)});
   }
   const Bvh bvh(test::scene_of(fan));
-  image_ = std::make_shared<MemoryImage>(bvh);
+  lines_ = test::far_lines(MemoryImage(bvh));
   Core core({.latency = 5}, {}, kExact);
   compare(core, std::vector<CoreRay>(
                     40, {.ray = {glm::vec3(0x1.1p-100f), scaled_direction({1, 1, 1.5})}}));
@@ -194,9 +195,9 @@ TEST_F(ExactResolverTest, FailedRaysSayWhyAndLeaveNothing) {
     rays.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(rays.size())});
   }
   ReferenceCore reference(ReferenceCore::kStackDepth, true);
-  const std::vector<CoreResult> expected = words(reference, image_->lines(), rays);
+  const std::vector<CoreResult> expected = words(reference, lines_, rays);
   CorePort<Vray_core_small_exact> core;
-  core.invalidate(image_->lines().size());
+  core.invalidate(lines_.size());
   core.set_read_ready(true);
   std::deque<std::pair<std::uint32_t, std::uint64_t>> reads;  // lines and their tags
   std::size_t sent = 0, ended = 0;
@@ -222,7 +223,7 @@ TEST_F(ExactResolverTest, FailedRaysSayWhyAndLeaveNothing) {
     if (!reads.empty() && core.has_room()) {
       const auto [line, tag] = reads.front();
       reads.pop_front();
-      core.put(image_->lines()[line], random_.below(32) == 0, tag);
+      core.put(lines_[line], random_.below(32) == 0, tag);
     }
     core.model()->abort_i = random_.below(4'096) == 0;
     core.clock();
@@ -238,7 +239,7 @@ TEST_F(ExactResolverTest, ResetsInMidRunLeaveNothing) {
   for (const Ray& ray : some_rays(mesh_, random_, 200)) rays.push_back({.ray = ray});
   Core core({.latency = 20, .disorder = 100, .not_taken = 64}, {.not_taken = 100}, kExact);
   for (int round = 0; round < 8; ++round) {
-    core.abandon(image_->lines(), rays, static_cast<unsigned>(1 + random_.below(3'000)));
+    core.abandon(lines_, rays, static_cast<unsigned>(1 + random_.below(3'000)));
   }
   compare(core, rays);
   EXPECT_GT(found_, 20);

@@ -1,9 +1,13 @@
 // A scene and rays to test ray cores with.
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "host/exact/test/meshes.h"
+#include "host/intersect/core/memory_image.h"
 
 namespace raygate::test {
 
@@ -36,6 +40,35 @@ inline std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& rand
     if (largest(way) > 0.0) rays.push_back({origin, scaled_direction(way)});
   }
   return rays;
+}
+
+/// Distance by which far_lines moves lines.
+constexpr std::uint32_t kFar = 0x17'EDCB;
+
+/// Returns a copy of an image with all lines but the root moved up by kFar, and with larger ranks
+/// in the same order, so that tests reach high bits of line numbers and ranks.
+inline std::vector<MemoryLine> far_lines(const MemoryImage& image) {
+  const std::span<const MemoryLine> lines = image.lines();
+  std::vector<MemoryLine> far(lines.size() + kFar);
+  std::vector<std::uint32_t> nodes{MemoryImage::kRoot};
+  while (!nodes.empty()) {
+    const std::uint32_t at = nodes.back();
+    nodes.pop_back();
+    NodeLine node(lines[at]);
+    std::uint32_t next = std::exchange(node.base, node.base + kFar);
+    far[at == MemoryImage::kRoot ? at : at + kFar] = node.line();
+    for (const NodeLine::Child& child : node.child) {
+      if (child.kind == NodeLine::kInner) nodes.push_back(next);
+      for (std::uint32_t k = 0; child.kind != NodeLine::kInner && k < child.kind; ++k) {
+        TriangleLine triangle(lines[next + k]);
+        triangle.index += kFar;
+        triangle.rank *= 3'000'001;
+        far[next + k + kFar] = triangle.line();
+      }
+      next += child.size();
+    }
+  }
+  return far;
 }
 
 }  // namespace raygate::test
