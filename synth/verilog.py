@@ -17,7 +17,7 @@ def write(design: catalogue.Design, out: pathlib.Path) -> None:
     out.parent.mkdir(parents=True, exist_ok=True)
     out.unlink(missing_ok=True)  # a failed run must not leave an older file behind
     yosys.run(scripts.plain_verilog(design, out), out.with_suffix(".log"))
-    # Yosys leaves ports open, mixes widths, repeats case items and splits no words that depend on parts of themselves.
+    # Yosys writes overlapping case items, open ports, words of which one bit depends on another, and operands of mixed widths.
     lint = "".join(f"/* verilator lint_off {rule} */\n" for rule in ("CASEOVERLAP", "PINMISSING", "UNOPTFLAT", "WIDTH"))
     out.write_text(f"// {' '.join([design.top, *map('='.join, design.parameters)])}, by make synth VERILOG=1\n{lint}{out.read_text()}")
 

@@ -93,8 +93,8 @@ raygate is compiled by {{ machine.compiler }}; Mitsuba 3 is PyPI's, with Debian'
 Both renderers get the same scene (`host/lab/peers/convert.py`), film and box filter, and integrator `path` with
 at most 64 reflections and refractions in a row and Russian roulette after three surfaces. Seconds are medians
 of ten interleaved seeds, without loading and compiling; with one thread, they are processor time. Errors are relative
-to the renderer's own long run. MSE is the mean square error of scene-linear light, dominated by a few bright pixels
-dominate; MSE on a display is that of 8-bit display values.
+to the renderer's own long run. MSE is the mean square error of scene-linear light, dominated by a few bright pixels;
+MSE on a display is that of 8-bit display values.
 
 The algorithms differ. raygate finds caustics by light paths; the last two columns are
 without them. It traces eight more rays per sample in pixels with an edge of an emitter. All

@@ -200,7 +200,7 @@ def _results(compute: Callable[..., Array], operands: Sequence[Array], format: F
 
 def _numbers(x: npt.ArrayLike) -> Array:
     """Returns an array; signed integers become float64."""
-    array = np.array(x, object) if isinstance(x, int) else _arrays.plain("operand", x)
+    array = np.array(x, object) if type(x) is int and abs(x) < 2**1000 else _arrays.plain("operand", x)
     if array.dtype.kind in "iO":
         wide = array.astype(np.float64)
         if array.size and (np.abs(wide) >= 2.0 ** 53).any():

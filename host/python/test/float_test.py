@@ -100,7 +100,11 @@ class Operations(unittest.TestCase):
 
     def test_says_what_it_cannot_use(self):
         for expected, call in (
-                ("below 2\\^53", lambda: rf.fp_add(1 << 60, 2)),
+                ("below 2\\^53", lambda: rf.fp_add([1 << 60], 2)),
+                ("found 9223372036854775808, expected a whole number below 2\\^53", lambda: rf.fp_add(1 << 63, 2)),
+                ("found -1180591620717411303424, expected a whole number", lambda: rf.fp_add(1.0, -1 << 70)),
+                ("found a value of type bool", lambda: rf.fp_add(True, 1)),
+                ("5.5.*expected 2 to 11 exponent bits", lambda: rf.Format(5.5, 10)),  # type: ignore[arg-type]
                 ("^operand: found a value of type str, expected numbers$", lambda: rf.fp_add("1", 2.0)),
                 ("float64 and uint32", lambda: rf.fp_add([1.0], np.uint32([2]))),
                 ("found 0.1, which is no number", lambda: rf.fp_add(np.float64(0.1), 0.5, rf.BINARY16)),

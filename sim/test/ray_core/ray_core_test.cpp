@@ -42,7 +42,6 @@ class RayCoreTest : public testing::Test {
 
   Bvh bvh_{test::scene_of(bodies())};
   std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
-  std::vector<MemoryLine> far_lines_ = test::far_lines(*image_);
   Random random_;
   CoreCounters counters_;
 };
@@ -202,8 +201,9 @@ TEST_P(EachRayCoreTest, EndsAreTheReferences) {
   for (const Ray& ray : rays)
     sent.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(sent.size())});
   std::vector<CoreResult> got, expected;
-  core()->trace(far_lines_, sent, got);
-  ReferenceCore().trace(far_lines_, sent, expected);
+  const std::vector<MemoryLine> lines = test::far_lines(*image_);
+  core()->trace(lines, sent, got);
+  ReferenceCore().trace(lines, sent, expected);
   std::vector<bool> open(sent.size());
   const auto ends = [&](const std::vector<CoreResult>& results) {
     std::vector<CoreResult> ends(sent.size());
@@ -240,7 +240,8 @@ TEST_P(EachRayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
     if (one.tag % 4 != 0) one.t_max = random_.uniform(0.01f, 3.0f);
   }
   std::vector<CoreResult> results;
-  ReferenceCore().trace(far_lines_, all, results);
+  const std::vector<MemoryLine> lines = test::far_lines(*image_);
+  ReferenceCore().trace(lines, all, results);
   for (const CoreResult& result : results) {
     if (result.kind == CoreResult::Kind::kEnd && !result.found) sent.push_back(all[result.tag]);
   }
@@ -248,7 +249,7 @@ TEST_P(EachRayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
   const auto tests = [&](CoreUnit& unit) {
     std::vector<CoreResult> words;
     std::vector<std::uint32_t> tests(all.size());
-    unit.trace(far_lines_, sent, words);
+    unit.trace(lines, sent, words);
     for (const CoreResult& result : words) {
       if (result.kind == CoreResult::Kind::kEnd) tests[result.tag] = result.tests;
     }

@@ -42,11 +42,11 @@ inline std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& rand
   return rays;
 }
 
-/// Distance by which far_lines moves lines.
+/// Number of lines by which far_lines moves all lines but the root.
 constexpr std::uint32_t kFar = 0x17'EDCB;
 
-/// Returns a copy of an image with all lines but the root moved up by kFar, and with larger ranks
-/// in the same order, so that tests reach high bits of line numbers and ranks.
+/// Returns a copy of an image with all lines but the root moved up by kFar, and larger ranks in the
+/// same order: tests then reach high bits of line numbers and ranks.
 inline std::vector<MemoryLine> far_lines(const MemoryImage& image) {
   const std::span<const MemoryLine> lines = image.lines();
   std::vector<MemoryLine> far(lines.size() + kFar);
@@ -58,14 +58,14 @@ inline std::vector<MemoryLine> far_lines(const MemoryImage& image) {
     std::uint32_t next = std::exchange(node.base, node.base + kFar);
     far[at == MemoryImage::kRoot ? at : at + kFar] = node.line();
     for (const NodeLine::Child& child : node.child) {
-      if (child.kind == NodeLine::kInner) nodes.push_back(next);
-      for (std::uint32_t k = 0; child.kind != NodeLine::kInner && k < child.kind; ++k) {
-        TriangleLine triangle(lines[next + k]);
+      const std::uint32_t end = next + child.size();
+      if (child.kind == NodeLine::kInner) nodes.push_back(next++);
+      for (; next < end; ++next) {
+        TriangleLine triangle(lines[next]);
         triangle.index += kFar;
         triangle.rank *= 3'000'001;
-        far[next + k + kFar] = triangle.line();
+        far[next + kFar] = triangle.line();
       }
-      next += child.size();
     }
   }
   return far;
