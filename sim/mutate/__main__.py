@@ -100,14 +100,15 @@ def timed_tests(program: pathlib.Path) -> list[tuple[str, int]]:
     return [(test, round(2 + 1.5 * times[test])) for test in sorted(times, key=lambda test: times[test])]
 
 
-def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
-    """Returns a unit's faults, numbered from 1, that its tests do not detect. Reports progress on stderr."""
+def test_survivors(program: pathlib.Path, faults: list[str]) -> list[int]:
+    """Returns the numbers, from 1, of a unit's faults that its tests do not detect. Reports these and progress on stderr."""
     tests, survivors = timed_tests(program), []
-    for fault in range(1, faults + 1):
+    for fault, line in enumerate(faults, 1):
         if all(run_test(program, test, fault, limit)[0] for test, limit in tests):
             survivors.append(fault)
-        if fault % max(1, faults // 10) == 0:
-            print(f"{program.name}: {fault} of {faults} faults tested, {len(survivors)} not caught", file=sys.stderr, flush=True)
+            print(f"{program.name}: fault {fault} not caught: {place(line)}", file=sys.stderr, flush=True)
+        if fault % max(1, len(faults) // 10) == 0:
+            print(f"{program.name}: {fault} of {len(faults)} faults tested, {len(survivors)} not caught", file=sys.stderr, flush=True)
     return survivors
 
 
@@ -115,7 +116,7 @@ def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, at_most: fl
     """Runs a core's test with each of its faults. Then drops survivors that change no output, until at most `at_most` percent are left."""
     netlist = netlists / core
     faults = (netlists / f"{core}.list").read_text().splitlines()
-    survived = test_survivors(programs / f"{core}_mutants", len(faults))
+    survived = test_survivors(programs / f"{core}_mutants", faults)
     outcome = Outcome(core, len(faults))
     for number in list(survived):
         if 100 * len(survived) <= at_most * len(faults):

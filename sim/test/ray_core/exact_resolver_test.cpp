@@ -73,7 +73,8 @@ class ExactResolverTest : public testing::Test {
   std::vector<Corners> mesh_ = doubled();
   Bvh bvh_{test::scene_of(mesh_)};
   std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
-  std::vector<MemoryLine> lines_ = test::far_lines(*image_);
+  test::FarLines far_{*image_};
+  std::span<const MemoryLine> lines_ = far_.lines();
   Random random_;
   int found_ = 0, without_t_ = 0;
 };
@@ -181,7 +182,8 @@ TEST_F(ExactResolverTest, LongWorkIsWaitedFor) {
     fan.push_back({glm::vec3(1, 1, 1.5f), corner(n), corner(n + 1)});
   }
   const Bvh bvh(test::scene_of(fan));
-  lines_ = test::far_lines(MemoryImage(bvh));
+  const test::FarLines far{MemoryImage(bvh)};
+  lines_ = far.lines();
   Core core({.latency = 5}, {}, kExact);
   compare(core, std::vector<CoreRay>(
                     40, {.ray = {glm::vec3(0x1.1p-100f), scaled_direction({1, 1, 1.5})}}));
@@ -243,6 +245,13 @@ TEST_F(ExactResolverTest, ResetsInMidRunLeaveNothing) {
   }
   compare(core, rays);
   EXPECT_GT(found_, 20);
+}
+
+/// See RayCoreTest.EventsAreTheRecorded.
+TEST_F(ExactResolverTest, EventsAreTheRecorded) {
+  Core core({.latency = 20, .disorder = 30, .not_taken = 32}, {}, kExact);
+  EXPECT_EQ(test::events(core, lines_, test::fixed_rays(500)),
+            (std::vector<std::uint64_t>{223'190, 5'525, 5'792, 8'182}));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "Vray_core_shared.h"
 #include "Vray_core_small.h"
@@ -201,9 +202,9 @@ TEST_P(EachRayCoreTest, EndsAreTheReferences) {
   for (const Ray& ray : rays)
     sent.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(sent.size())});
   std::vector<CoreResult> got, expected;
-  const std::vector<MemoryLine> lines = test::far_lines(*image_);
-  core()->trace(lines, sent, got);
-  ReferenceCore().trace(lines, sent, expected);
+  const test::FarLines far(*image_);
+  core()->trace(far.lines(), sent, got);
+  ReferenceCore().trace(far.lines(), sent, expected);
   std::vector<bool> open(sent.size());
   const auto ends = [&](const std::vector<CoreResult>& results) {
     std::vector<CoreResult> ends(sent.size());
@@ -240,8 +241,8 @@ TEST_P(EachRayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
     if (one.tag % 4 != 0) one.t_max = random_.uniform(0.01f, 3.0f);
   }
   std::vector<CoreResult> results;
-  const std::vector<MemoryLine> lines = test::far_lines(*image_);
-  ReferenceCore().trace(lines, all, results);
+  const test::FarLines far(*image_);
+  ReferenceCore().trace(far.lines(), all, results);
   for (const CoreResult& result : results) {
     if (result.kind == CoreResult::Kind::kEnd && !result.found) sent.push_back(all[result.tag]);
   }
@@ -249,7 +250,7 @@ TEST_P(EachRayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
   const auto tests = [&](CoreUnit& unit) {
     std::vector<CoreResult> words;
     std::vector<std::uint32_t> tests(all.size());
-    unit.trace(lines, sent, words);
+    unit.trace(far.lines(), sent, words);
     for (const CoreResult& result : words) {
       if (result.kind == CoreResult::Kind::kEnd) tests[result.tag] = result.tests;
     }
@@ -480,6 +481,63 @@ TEST_F(RayCoreTest, TreesAreAsDeepAsTheImagesOrAnError) {
       EXPECT_EQ(unit->counters().overflows, rays.size());
     }
   }
+}
+
+/// Hits of thin triangles by grazing rays are reported as doubts if their error is too large. Each
+/// ray meets one triangle, so that results do not depend on the order of tests.
+TEST_P(EachRayCoreTest, HitsOfNeedlesAreTheReferences) {
+  std::vector<Corners> needles;
+  std::vector<Ray> rays;
+  for (int n = 0; n < 1'200; ++n) {
+    const glm::vec3 middle(16.0f * static_cast<float>(n), random_.uniform(), random_.uniform());
+    const glm::vec3 along = random_.point(), across = random_.point();
+    const int width = random_.below(17), grazing = random_.below(17 - width);
+    const Corners& needle = needles.emplace_back(
+        Corners{middle - along, middle + along, middle + std::ldexp(1.0f, -width) * across});
+    const glm::vec3 origin =
+        middle + 0.7f * across + std::ldexp(1.0f, -grazing) * glm::cross(along, across);
+    glm::dvec3 way(0.0);
+    for (const glm::dvec3& corner : needle) way += corner - glm::dvec3(origin);
+    rays.push_back({origin, scaled_direction(way)});
+  }
+  const Bvh bvh(test::scene_of(needles));
+  const MemoryImage image(bvh);
+  using Words = std::tuple<std::uint32_t, CoreResult::Kind, std::uint32_t, float, std::uint32_t>;
+  const auto words = [&](CoreUnit& unit) {
+    std::vector<CoreResult> results;
+    unit.trace(image.lines(), numbered(rays), results);
+    std::vector<Words> words;
+    for (const CoreResult& result : results) {
+      const bool is_valid = result.found || result.kind == CoreResult::Kind::kDoubt;
+      words.emplace_back(result.tag, result.kind, is_valid ? result.triangle : 0, result.t,
+                         result.t_error);
+    }
+    std::ranges::sort(words);
+    return words;
+  };
+  ReferenceCore reference;
+  EXPECT_EQ(words(*core()), words(reference));
+  EXPECT_GT(reference.counters().edge_doubts, 10u);
+  EXPECT_GT(reference.counters().hits, 10u);
+}
+
+/// Events of fixed rays. Many faults of arbitration, prefetch and caches change nothing else.
+/// After an intended change, enter the new figures and repeat `make bench ONLY=core`.
+TEST_F(RayCoreTest, EventsAreTheRecorded) {
+  std::vector<CoreRay> rays = test::fixed_rays(3'000);
+  const auto events = [&](std::span<const MemoryLine> lines) {
+    return test::events(*make_rtl_core({.latency = 50, .disorder = 40, .not_taken = 32}), lines,
+                        rays);
+  };
+  EXPECT_EQ(events(test::FarLines(*image_).lines()),
+            (std::vector<std::uint64_t>{29'234, 28'479, 16'325, 2'740}));
+  const Bvh larger{test::scene_of(test::sphere(4))};  // than the caches
+  EXPECT_EQ(events(MemoryImage(larger).lines()),
+            (std::vector<std::uint64_t>{28'583, 21'777, 7'418, 16'204}));
+  for (CoreRay& ray : rays)
+    ray.ray = {{-3.0f, 0.001f * static_cast<float>(ray.tag % 100), 0.0f}, {1, 0, 0}};
+  rays.resize(130);
+  EXPECT_EQ(events(chain(12)), (std::vector<std::uint64_t>{35'738, 2'990, 130, 24}));
 }
 
 }  // namespace

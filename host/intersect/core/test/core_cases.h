@@ -1,12 +1,17 @@
 // A scene and rays to test ray cores with.
 #pragma once
 
+#include <sys/mman.h>
+
+#include <cmath>
 #include <cstdint>
+#include <new>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "host/exact/test/meshes.h"
+#include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
 
 namespace raygate::test {
@@ -42,33 +47,69 @@ inline std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& rand
   return rays;
 }
 
-/// Number of lines by which far_lines moves all lines but the root.
-constexpr std::uint32_t kFar = 0x17'EDCB;
+/// Returns rays that do not depend on RAYGATE_SEED, in a box of size 5.
+inline std::vector<CoreRay> fixed_rays(std::uint32_t count) {
+  std::vector<CoreRay> rays;
+  for (std::uint32_t n = 0; n < count; ++n) {
+    const auto part = [n](double step) { return 2.0 * (n * step - std::floor(n * step)) - 1.0; };
+    const glm::dvec3 origin(part(0.618034), part(0.414214), part(0.732051));
+    const glm::dvec3 target(part(0.236068), part(0.645751), part(0.316625));
+    rays.push_back(
+        {.ray = {glm::vec3(2.5 * origin), scaled_direction(target - 2.5 * origin)}, .tag = n});
+  }
+  return rays;
+}
 
-/// Returns a copy of an image with all lines but the root moved up by kFar, and larger ranks in the
-/// same order: tests then reach high bits of line numbers and ranks.
-inline std::vector<MemoryLine> far_lines(const MemoryImage& image) {
-  const std::span<const MemoryLine> lines = image.lines();
-  std::vector<MemoryLine> far(lines.size() + kFar);
-  std::vector<std::uint32_t> nodes{MemoryImage::kRoot};
-  while (!nodes.empty()) {
-    const std::uint32_t at = nodes.back();
-    nodes.pop_back();
-    NodeLine node(lines[at]);
-    std::uint32_t next = std::exchange(node.base, node.base + kFar);
-    far[at == MemoryImage::kRoot ? at : at + kFar] = node.line();
-    for (const NodeLine::Child& child : node.child) {
-      const std::uint32_t end = next + child.size();
-      if (child.kind == NodeLine::kInner) nodes.push_back(next++);
-      for (; next < end; ++next) {
-        TriangleLine triangle(lines[next]);
-        triangle.index += kFar;
-        triangle.rank *= 3'000'001;
-        far[next + kFar] = triangle.line();
+/// Returns a core's counters after it has traced `rays`: clocks, nodes, triangles, lines read.
+inline std::vector<std::uint64_t> events(CoreUnit& core, std::span<const MemoryLine> lines,
+                                         std::span<const CoreRay> rays) {
+  std::vector<CoreResult> results;
+  core.trace(lines, rays, results);
+  const CoreCounters counters = core.counters();
+  return {counters.clocks, counters.nodes, counters.tests, counters.lines};
+}
+
+/// Number of lines by which FarLines moves all lines but the root. Most of its 28 bits are ones.
+constexpr std::uint32_t kFar = 0xFEF'EDCB;
+
+/// A copy of an image with all lines but the root moved up by kFar, and larger ranks in the same
+/// order: tests then reach high bits of line numbers and ranks. Takes 16 GiB of addresses, but
+/// memory only for the copied lines. Throws std::bad_alloc.
+class FarLines {
+ public:
+  explicit FarLines(const MemoryImage& image) : size_(image.lines().size() + kFar) {
+    void* const place = mmap(nullptr, size_ * sizeof(MemoryLine), PROT_READ | PROT_WRITE,
+                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (place == MAP_FAILED) throw std::bad_alloc();
+    far_ = static_cast<MemoryLine*>(place);
+    std::vector<std::uint32_t> nodes{MemoryImage::kRoot};
+    while (!nodes.empty()) {
+      const std::uint32_t at = nodes.back();
+      nodes.pop_back();
+      NodeLine node(image.lines()[at]);
+      std::uint32_t next = std::exchange(node.base, node.base + kFar);
+      far_[at == MemoryImage::kRoot ? at : at + kFar] = node.line();
+      for (const NodeLine::Child& child : node.child) {
+        const std::uint32_t end = next + child.size();
+        if (child.kind == NodeLine::kInner) nodes.push_back(next++);
+        for (; next < end; ++next) {
+          TriangleLine triangle(image.lines()[next]);
+          triangle.index += kFar;
+          triangle.rank *= 3'000'001;
+          far_[next + kFar] = triangle.line();
+        }
       }
     }
   }
-  return far;
-}
+  ~FarLines() { munmap(far_, size_ * sizeof(MemoryLine)); }
+  FarLines(const FarLines&) = delete;
+  FarLines& operator=(const FarLines&) = delete;
+
+  [[nodiscard]] std::span<const MemoryLine> lines() const { return {far_, size_}; }
+
+ private:
+  std::size_t size_;
+  MemoryLine* far_ = nullptr;
+};
 
 }  // namespace raygate::test
