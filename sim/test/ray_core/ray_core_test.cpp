@@ -203,7 +203,7 @@ TEST_P(EachRayCoreTest, EndsAreTheReferences) {
     sent.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(sent.size())});
   std::vector<CoreResult> got, expected;
   const test::FarLines far(*image_);
-  core()->trace(far.lines(), sent, got);
+  core({.latency = 50})->trace(far.lines(), sent, got);
   ReferenceCore().trace(far.lines(), sent, expected);
   std::vector<bool> open(sent.size());
   const auto ends = [&](const std::vector<CoreResult>& results) {
@@ -336,7 +336,7 @@ TEST_F(RayCoreTest, ANodeBelowItselfIsAnError) {
   node.base = MemoryImage::kRoot;
   for (NodeLine::Child& child : node.child) child.kind = NodeLine::kAbsent;
   node.child[0] = {NodeLine::kInner, {0, 0, 0}, {255, 255, 255}};
-  const std::vector<MemoryLine> lines(40, node.line());
+  const std::vector<MemoryLine> lines(41, node.line());
   const std::vector<CoreRay> rays = numbered(some_rays(bodies(), random_, 300));
   ReferenceCore reference;
   CoreModel<Vray_core_small> small({.latency = 3});
@@ -530,14 +530,26 @@ TEST_F(RayCoreTest, EventsAreTheRecorded) {
                         rays);
   };
   EXPECT_EQ(events(test::FarLines(*image_).lines()),
-            (std::vector<std::uint64_t>{29'234, 28'479, 16'325, 2'740}));
+            (std::vector<std::uint64_t>{26'485, 25'759, 14'554, 2'549}));
   const Bvh larger{test::scene_of(test::sphere(4))};  // than the caches
   EXPECT_EQ(events(MemoryImage(larger).lines()),
-            (std::vector<std::uint64_t>{28'583, 21'777, 7'418, 16'204}));
-  for (CoreRay& ray : rays)
-    ray.ray = {{-3.0f, 0.001f * static_cast<float>(ray.tag % 100), 0.0f}, {1, 0, 0}};
+            (std::vector<std::uint64_t>{27'680, 21'080, 7'145, 15'520}));
+  std::vector<Corners> row;  // of distances that grow by powers of two: a deep tree
+  for (std::uint32_t n = 0; n < 600; ++n) {
+    const float x = std::ldexp(1.0f + 0.02f * static_cast<float>(n % 15), static_cast<int>(n / 15));
+    const glm::vec3 corner(x, test::fixed(n, 0.618034), test::fixed(n, 0.414214));
+    row.push_back({corner, corner + glm::vec3(0, 0.2f, 0.1f), corner + glm::vec3(0, 0.1f, 0.2f)});
+  }
+  const Bvh deep{test::scene_of(row)};
+  for (CoreRay& ray : rays) {
+    ray.ray = {{-1.0, test::fixed(ray.tag, 0.618034), test::fixed(ray.tag, 0.414214)}, {1, 0, 0}};
+    ray.t_max = std::numeric_limits<float>::infinity();
+  }
+  rays.resize(300);
+  EXPECT_EQ(events(MemoryImage(deep).lines()),
+            (std::vector<std::uint64_t>{157'896, 17'815, 7'267, 2'011}));
   rays.resize(130);
-  EXPECT_EQ(events(chain(12)), (std::vector<std::uint64_t>{35'738, 2'990, 130, 24}));
+  EXPECT_EQ(events(chain(12)), (std::vector<std::uint64_t>{35'364, 2'891, 130, 24}));
 }
 
 }  // namespace

@@ -47,15 +47,23 @@ inline std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& rand
   return rays;
 }
 
-/// Returns rays that do not depend on RAYGATE_SEED, in a box of size 5.
+/// Returns the fraction of n * step, from -1 to 1. Unlike Random, it does not depend on
+/// RAYGATE_SEED.
+inline double fixed(std::uint32_t n, double step) {
+  return 2.0 * (n * step - std::floor(n * step)) - 1.0;
+}
+
+/// Returns rays that do not depend on RAYGATE_SEED. A third of them have any_hit, or a limit.
 inline std::vector<CoreRay> fixed_rays(std::uint32_t count) {
   std::vector<CoreRay> rays;
   for (std::uint32_t n = 0; n < count; ++n) {
-    const auto part = [n](double step) { return 2.0 * (n * step - std::floor(n * step)) - 1.0; };
-    const glm::dvec3 origin(part(0.618034), part(0.414214), part(0.732051));
-    const glm::dvec3 target(part(0.236068), part(0.645751), part(0.316625));
-    rays.push_back(
-        {.ray = {glm::vec3(2.5 * origin), scaled_direction(target - 2.5 * origin)}, .tag = n});
+    const glm::dvec3 origin(fixed(n, 0.618034), fixed(n, 0.414214), fixed(n, 0.732051));
+    const glm::dvec3 target(fixed(n, 0.236068), fixed(n, 0.645751), fixed(n, 0.316625));
+    CoreRay& ray = rays.emplace_back();
+    ray.ray = {glm::vec3(2.5 * origin), scaled_direction(target - 2.5 * origin)};
+    ray.tag = n;
+    ray.any_hit = n % 6 == 1;
+    if (n % 6 == 2) ray.t_max = 1.5f;
   }
   return rays;
 }
@@ -72,9 +80,10 @@ inline std::vector<std::uint64_t> events(CoreUnit& core, std::span<const MemoryL
 /// Number of lines by which FarLines moves all lines but the root. Most of its 28 bits are ones.
 constexpr std::uint32_t kFar = 0xFEF'EDCB;
 
-/// A copy of an image with all lines but the root moved up by kFar, and larger ranks in the same
-/// order: tests then reach high bits of line numbers and ranks. Takes 16 GiB of addresses, but
-/// memory only for the copied lines. Throws std::bad_alloc.
+/// A copy of an image with all lines but the root moved up by kFar, and ranks in the same order
+/// whose differences are powers of two: results then depend on high bits of line numbers and on
+/// each bit of ranks. Takes 16 GiB of addresses, but memory only for the copied lines. Throws
+/// std::bad_alloc.
 class FarLines {
  public:
   explicit FarLines(const MemoryImage& image) : size_(image.lines().size() + kFar) {
@@ -95,7 +104,7 @@ class FarLines {
         for (; next < end; ++next) {
           TriangleLine triangle(image.lines()[next]);
           triangle.index += kFar;
-          triangle.rank *= 3'000'001;
+          triangle.rank = triangle.rank / 27 * ((1u << 27) - 1) + (2u << triangle.rank % 27) - 1;
           far_[next + kFar] = triangle.line();
         }
       }
