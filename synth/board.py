@@ -50,7 +50,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="synth.board", description="Makes a board's bitstream.")
     parser.add_argument("top", help="the design on the board")
     parser.add_argument("board")
-    parser.add_argument("--seed", type=int, default=1, help="of the placement (%(default)s)")
+    parser.add_argument("--seed", type=int, default=2, help="of the placement (%(default)s, which is faster than 1)")
     given = parser.parse_args()
     board = next((board for board in BOARDS if (board.name, board.holds) == (given.board, given.top)), None)
     if board is None:
