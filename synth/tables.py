@@ -2,6 +2,7 @@
 
 import csv
 import datetime
+import functools
 import io
 import pathlib
 import re
@@ -16,13 +17,11 @@ def markdown(header: list[str], rows: list[list[object]]) -> str:
     if not rows:
         return ""
     widths = [max(len(row[i]) for row in text) for i in range(len(header))]
-    right = [all(row[i][:1].isdigit() or row[i] in ("", "-") for row in text[1:])
-             for i in range(len(header))]
+    right = [all(row[i][:1].isdigit() or row[i] in ("", "-") for row in text[1:]) for i in range(len(header))]
     lines = ["| " + " | ".join(cell.rjust(w) if r else cell.ljust(w)
                                for cell, w, r in zip(row, widths, right, strict=True)) + " |"
              for row in text]
-    rule = "|" + "|".join("-" * (w + 1) + (":" if r else "-")
-                          for w, r in zip(widths, right, strict=True)) + "|"
+    rule = "|" + "|".join("-" * (w + 1) + (":" if r else "-") for w, r in zip(widths, right, strict=True)) + "|"
     return "\n".join([lines[0], rule, *lines[1:]]) + "\n"
 
 
@@ -40,6 +39,7 @@ def comma_separated(rows: list[dict], columns: list[str]) -> str:
     return out.getvalue()
 
 
+@functools.cache  # later, published files make the checkout dirty
 def measured(command: str) -> str:
     """Returns the last line of a page: the command, the commit and the date."""
     commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=RESULTS, capture_output=True, text=True, check=False).stdout.strip()
@@ -66,6 +66,6 @@ def with_results(text: str, measured_by: dict[str, str] = {}) -> str:
 
 def publish(file: str, text: str, command: str) -> None:
     """Writes `text` to a CSV file of results/ and updates this file's tables in results/README.md. `command`: as for `measured`."""
+    results, line = RESULTS / "README.md", measured(command)
     (RESULTS / file).write_text(text)
-    results = RESULTS / "README.md"
-    results.write_text(with_results(results.read_text(), {file: measured(command)}))
+    results.write_text(with_results(results.read_text(), {file: line}))
