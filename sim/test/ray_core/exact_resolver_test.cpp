@@ -253,7 +253,7 @@ TEST_F(ExactResolverTest, ResetsInMidRunLeaveNothing) {
 TEST_F(ExactResolverTest, EventsAreTheRecorded) {
   Core core({.latency = 20, .disorder = 30, .not_taken = 32}, {}, kExact);
   EXPECT_EQ(test::events(core, lines_, test::fixed_rays(500)),
-            (std::vector<std::uint64_t>{203'193, 5'102, 5'139, 7'206}));
+            (std::vector<std::uint64_t>{203'193, 5'102, 5'139, 7'206, 81'965}));
 }
 
 }  // namespace

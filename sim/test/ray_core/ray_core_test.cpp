@@ -530,10 +530,10 @@ TEST_F(RayCoreTest, EventsAreTheRecorded) {
                         rays);
   };
   EXPECT_EQ(events(test::FarLines(*image_).lines()),
-            (std::vector<std::uint64_t>{26'485, 25'759, 14'554, 2'549}));
+            (std::vector<std::uint64_t>{26'485, 25'759, 14'554, 2'549, 0}));
   const Bvh larger{test::scene_of(test::sphere(4))};  // than the caches
   EXPECT_EQ(events(MemoryImage(larger).lines()),
-            (std::vector<std::uint64_t>{27'680, 21'080, 7'145, 15'520}));
+            (std::vector<std::uint64_t>{27'680, 21'080, 7'145, 15'520, 0}));
   std::vector<Corners> row;  // of distances that grow by powers of two: a deep tree
   for (std::uint32_t n = 0; n < 600; ++n) {
     const float x = std::ldexp(1.0f + 0.02f * static_cast<float>(n % 15), static_cast<int>(n / 15));
@@ -547,9 +547,9 @@ TEST_F(RayCoreTest, EventsAreTheRecorded) {
   }
   rays.resize(300);
   EXPECT_EQ(events(MemoryImage(deep).lines()),
-            (std::vector<std::uint64_t>{157'896, 17'815, 7'267, 2'011}));
+            (std::vector<std::uint64_t>{157'896, 17'815, 7'267, 2'011, 0}));
   rays.resize(130);
-  EXPECT_EQ(events(chain(12)), (std::vector<std::uint64_t>{35'364, 2'891, 130, 24}));
+  EXPECT_EQ(events(chain(12)), (std::vector<std::uint64_t>{35'364, 2'891, 130, 24, 0}));
 }
 
 }  // namespace

@@ -68,13 +68,14 @@ inline std::vector<CoreRay> fixed_rays(std::uint32_t count) {
   return rays;
 }
 
-/// Returns a core's counters after it has traced `rays`: clocks, nodes, triangles, lines read.
+/// Returns a core's counters after it has traced `rays`: clocks, nodes, triangles, lines read,
+/// and clocks of exact units.
 inline std::vector<std::uint64_t> events(CoreUnit& core, std::span<const MemoryLine> lines,
                                          std::span<const CoreRay> rays) {
   std::vector<CoreResult> results;
   core.trace(lines, rays, results);
   const CoreCounters counters = core.counters();
-  return {counters.clocks, counters.nodes, counters.tests, counters.lines};
+  return {counters.clocks, counters.nodes, counters.tests, counters.lines, counters.exact_clocks};
 }
 
 /// Number of lines by which FarLines moves all lines but the root. Most of its 28 bits are ones.
