@@ -28,15 +28,15 @@ struct Triangle {
   bool is_valid = false, is_exact = false, is_error = false, is_ignored = false;
 };
 
-/// Random triangles with any bit patterns, or ordinary ones: flat, thin, far away, or in a plane
-/// near the origin, some with products beyond the range of valid planes. Two in three rays aim at a
-/// point of the triangle.
+/// Random triangles with any bit patterns, or ordinary ones: flat, thin, far away, with a vertex
+/// near the origin, or in a plane near it, some with products beyond the range of valid planes. Two
+/// in three rays aim at a point of the triangle, half of these at one close to an edge.
 class Triangles {
  public:
   Triangle operator()() {
     Triangle next = seen();
     const auto& [a, b, c] = next.corners;
-    const float s = part(), t = part();
+    const float s = one_in(2) ? std::ldexp(part(), -between(15, 24)) : part(), t = part();
     next.direction = a + s * (b - a) + (1.0f - s) * t * (c - a) - next.origin;
     const float most = std::max(
         {std::abs(next.direction.x), std::abs(next.direction.y), std::abs(next.direction.z)});
@@ -73,7 +73,10 @@ class Triangles {
       next.corners[2] = glm::mix(next.corners[0], next.corners[1], 0.375f);
       if (one_in(2)) next.corners[2] += point(scale - between(0, 24));
     }
-    if (one_in(3)) {
+    if (one_in(4)) {
+      next.corners[0] = point(between(-20, 5));
+      next.origin = point(between(-20, 5));
+    } else if (one_in(3)) {
       next.origin = glm::mix(next.corners[0], next.corners[2], 1.25f);
       if (one_in(2)) next.origin += point(scale - between(0, 24));
     } else {
@@ -105,11 +108,14 @@ struct Kind {
 template <class UnitKind>
 class TriangleTest : public testing::Test {
  protected:
+  /// Returns a triangle's index: any 32 bits, no two alike.
+  static std::uint32_t index(unsigned number) { return 0x9E3779B1 * number; }
+
   void send(const Triangle& triangle, std::uint32_t number) {
     std::memset(&model_->triangle_i, 0, sizeof model_->triangle_i);
     PackedFields fields(model_->triangle_i);  // ray_core_pkg::triangle_line_t
     for (const glm::vec3& corner : triangle.corners) fields.put(corner);
-    fields.put(number);
+    fields.put(index(number));
     fields.put(0);
     fields.put(triangle.is_error, 1);
     fields.put(triangle.is_exact, 1);
@@ -123,7 +129,7 @@ class TriangleTest : public testing::Test {
     for (int k = 0; k < 3; ++k) point[k] = fields.take_float();
     const std::uint32_t distance_error = fields.take(4), normal_error = fields.take(4),
                         t_error = fields.take(4), t = fields.take();
-    ASSERT_EQ(fields.take(), number);
+    ASSERT_EQ(fields.take(), index(number));
     const bool found = fields.take(1) != 0, doubt = fields.take(1) != 0;
     ASSERT_EQ(fields.take(1), triangle.is_error || triangle.is_ignored);
     const SetUpRecord expected = set_up(triangle.origin, triangle.corners);
@@ -171,8 +177,9 @@ TYPED_TEST(TriangleTest, EqualsItsReference) {
       if (clock == 0) {
         std::memcpy(&model->direction_i, &directed.direction, sizeof directed.direction);
         std::memcpy(&model->origin_i, &rays[ctx].origin, sizeof rays[ctx].origin);
-        model->skip_id_i = rays[ctx].is_ignored && number % 2 == 0 ? number : ~0u;
-        model->source_id_i = rays[ctx].is_ignored && number % 2 != 0 ? number : ~0u;
+        const std::uint32_t id = this->index(number);
+        model->skip_id_i = rays[ctx].is_ignored && number % 2 == 0 ? id : ~id;
+        model->source_id_i = rays[ctx].is_ignored && number % 2 != 0 ? id : ~id;
         if (TypeParam::kClocks != 1) model->step_i = 0;
       }
       model.eval();
