@@ -185,7 +185,9 @@ TYPED_TEST(TriangleTest, EqualsItsReference) {
       model.eval();
       if ((model->verdict_o[5] >> 15 & 1) == 0) continue;
       ASSERT_FALSE(waiting.empty());
-      if (TypeParam::kClocks == 1) ASSERT_EQ(number + 1 - waiting.front(), 48u) << "see its header";
+      if (TypeParam::kClocks == 1) {
+        ASSERT_EQ(number + 1 - waiting.front(), 48u) << "see its header";
+      }
       ASSERT_EQ(model->ctx_o, waiting.front() % kRays);
       ASSERT_NO_FATAL_FAILURE(this->check(rays[waiting.front() % kRays], waiting.front()));
       waiting.pop_front();
