@@ -13,6 +13,7 @@ import json
 import pathlib
 import re
 import sys
+from collections.abc import Callable
 
 from synth import catalogue, runner, scripts, store, tables, tools, yosys
 from synth.catalogue import Design, Fpga
@@ -139,9 +140,10 @@ def main() -> int:
                     lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz, from {got['from']} to {got['to']}, "
                                f"{got['wires']} of {got['logic'] + got['wires']:.1f} ns in wires")
          for design, _, _, fpga in units], given.jobs)
-    text = table([(unit, got) for unit, got in zip(units, results, strict=True) if got])
-    print(text)
+    rows = [(unit, got) for unit, got in zip(units, results, strict=True) if got]
+    print(table(rows, tables.markdown))
     if given.publish:
+        text = table(rows, tables.page)
         for page in catalogue.HW.glob("*/README.md"):
             page.write_text(re.sub(r"(?<=<!-- fpga -->\n).*?(?=<!-- end -->)", lambda _: text, page.read_text(), flags=re.S))
     return runner.status(failures)
@@ -154,17 +156,15 @@ def period(top: str) -> int:
     return int(said[1] or 1)
 
 
-def table(units: list[tuple[tuple, dict]]) -> str:
-    """Returns the table of units (from catalogue.fpga_units) and their results of place()."""
-    heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "MHz (least to most)",
-             "million tests/s"]
+def table(units: list[tuple[tuple, dict]], form: Callable[[list[str], list[list[object]]], str]) -> str:
+    """Returns the table, written by `form`, of units (from catalogue.fpga_units) and their results of place()."""
+    heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "MHz (least to most)", "million tests/s"]
     rows = []
     for (design, form, kind, fpga), got in units:
         name = ", ".join([design.top, *(says for key, says in NAMES.items() if key in design.parameters)])
-        cells = ["-" if not cell else got[key] for key, cell in zip(
-            ("luts", "registers", "multipliers"), fpga.cells, strict=False)]
+        cells = ["-" if not cell else got[key] for key, cell in zip(("luts", "registers", "multipliers"), fpga.cells, strict=False)]
         rows.append([name, form, kind, fpga.title, *cells, f"{got['mhz']} ({got['rates'][0]} to {got['rates'][-1]})", f"{got['mhz'] / period(design.top):.2f}"])
-    return f"{tables.markdown(heads, rows)}\n{tables.measured('make fpga')}"
+    return f"{form(heads, rows)}\n{tables.measured('make fpga PUBLISH=1')}"
 
 
 # Descriptions of units' parameters.
