@@ -156,15 +156,15 @@ def period(top: str) -> int:
     return int(said[1] or 1)
 
 
-def table(units: list[tuple[tuple, dict]], form: Callable[[list[str], list[list[object]]], str]) -> str:
-    """Returns the table, written by `form`, of units (from catalogue.fpga_units) and their results of place()."""
+def table(units: list[tuple[tuple, dict]], write: Callable[[list[str], list[list[object]]], str]) -> str:
+    """Returns the table, written by `write`, of units (from catalogue.fpga_units) and their results of place()."""
     heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "MHz (least to most)", "million tests/s"]
     rows = []
     for (design, form, kind, fpga), got in units:
         name = ", ".join([design.top, *(says for key, says in NAMES.items() if key in design.parameters)])
         cells = ["-" if not cell else got[key] for key, cell in zip(("luts", "registers", "multipliers"), fpga.cells, strict=False)]
         rows.append([name, form, kind, fpga.title, *cells, f"{got['mhz']} ({got['rates'][0]} to {got['rates'][-1]})", f"{got['mhz'] / period(design.top):.2f}"])
-    return f"{form(heads, rows)}\n{tables.measured('make fpga PUBLISH=1')}"
+    return f"{write(heads, rows)}\n{tables.measured('make fpga PUBLISH=1')}"
 
 
 # Descriptions of units' parameters.
