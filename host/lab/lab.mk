@@ -3,7 +3,7 @@
 .PHONY: stress bench variant card peers speed
 
 # The command in a report: as typed, without variables that change no row.
-typed = make $(MAKECMDGOALS:card=variant) $(foreach name,$(filter-out PUBLISH JOBS SETUP,$(given)),$(name)=$($(name)))
+typed = make $(MAKECMDGOALS:card=variant) $(foreach name,$(filter-out PUBLISH JOBS SETUP UNITY,$(given)),$(name)=$($(name)))
 define measure
 @$(PYTHON) -B -m host.lab $(or $(lab_target),$(@:card=variant) $(if $(ONLY),--only '$(ONLY)')) $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
   $(if $(SCENES),--scenes '$(SCENES)') $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS) \

@@ -3,16 +3,15 @@
 import argparse
 import dataclasses
 import functools
-import shutil
 import sys
+
+from PIL import Image
 
 from synth import catalogue, chosen, runner, store, tables, tools, yosys
 from synth.catalogue import Library
 from synth.layout import flow, picture
 
 OUT = store.OUT / "layouts"
-
-
 SECTIONS = ("adders", "multipliers", "cores", "unit")
 
 
@@ -145,7 +144,7 @@ def main() -> int:
         for name in pictures:
             published = tables.RESULTS / f"layout-{name.replace('-osu035', '')}.png"
             if published.exists():  # the other layouts have no published picture
-                shutil.copy(OUT / f"{name}.png", published)
+                Image.open(OUT / f"{name}.png").convert("RGB").quantize(64).save(published, optimize=True)
     print(f"{text}\nReport: {report.relative_to(tools.ROOT)}" + (f", picture: {pictures[0]}.png" if len(pictures) == 1 else ""))
     return runner.status(failures) or any(any(got["failed"]) for got in records)
 

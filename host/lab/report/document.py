@@ -97,5 +97,5 @@ def render(template: str, folder: pathlib.Path, rows: list[dict], **values: obje
 
 def measured(about: dict) -> str:
     """Returns the last line of a report: date, commit and machine."""
-    return (f"\nMeasured by `{about['command']}` at commit {about['commit']}{' and changed files' * bool(about['changed_files'])}, "
-            f"{about['date']}, on {about['processor']}, {about['processors']} processors.\n")
+    return "\n" + wrap(f"Measured by `{about['command']}` at commit {about['commit']}{' and changed files' * bool(about['changed_files'])}, "
+                       f"{about['date']}, on {about['processor']}, {about['processors']} processors.\n")

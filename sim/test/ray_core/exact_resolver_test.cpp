@@ -249,7 +249,7 @@ TEST_F(ExactResolverTest, ResetsInMidRunLeaveNothing) {
   EXPECT_GT(found_, 20);
 }
 
-/// See RayCoreTest.EventsAreTheRecorded.
+/// Counters for fixed rays equal recorded values: see RayCoreTest.EventsAreTheRecorded.
 TEST_F(ExactResolverTest, EventsAreTheRecorded) {
   Core core({.latency = 20, .disorder = 30, .not_taken = 32}, {}, kExact);
   EXPECT_EQ(test::events(core, lines_, test::fixed_rays(500)),

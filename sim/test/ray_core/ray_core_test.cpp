@@ -521,8 +521,9 @@ TEST_P(EachRayCoreTest, HitsOfNeedlesAreTheReferences) {
   EXPECT_GT(reference.counters().hits, 10u);
 }
 
-/// Events of fixed rays. Many faults of arbitration, prefetch and caches change nothing else.
-/// After an intended change, enter the new figures and repeat `make bench ONLY=core`.
+/// Counters for fixed rays equal recorded values. Many faults of arbitration, prefetch and caches
+/// affect only these counters. After an intended change of the hardware, record the new values and
+/// repeat `make bench ONLY=core PUBLISH=1`.
 TEST_F(RayCoreTest, EventsAreTheRecorded) {
   std::vector<CoreRay> rays = test::fixed_rays(3'000);
   const auto events = [&](std::span<const MemoryLine> lines) {

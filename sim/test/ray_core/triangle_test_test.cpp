@@ -30,7 +30,7 @@ struct Triangle {
 
 /// Random triangles with any bit patterns, or ordinary ones: flat, thin, far away, with a vertex
 /// near the origin, or in a plane near it, some with products beyond the range of valid planes. Two
-/// in three rays aim at a point of the triangle, half of these at one close to an edge.
+/// in three rays aim at a point of the triangle, half of these at a point close to an edge.
 class Triangles {
  public:
   Triangle operator()() {
@@ -108,7 +108,7 @@ struct Kind {
 template <class UnitKind>
 class TriangleTest : public testing::Test {
  protected:
-  /// Returns a triangle's index: any 32 bits, no two alike.
+  /// Returns a triangle's index. Indices are distinct and use all 32 bits.
   static std::uint32_t index(unsigned number) { return 0x9E3779B1 * number; }
 
   void send(const Triangle& triangle, std::uint32_t number) {

@@ -47,13 +47,12 @@ inline std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& rand
   return rays;
 }
 
-/// Returns the fraction of n * step, from -1 to 1. Unlike Random, it does not depend on
-/// RAYGATE_SEED.
+/// Returns the fractional part of n * step, mapped to [-1, 1). Independent of RAYGATE_SEED.
 inline double fixed(std::uint32_t n, double step) {
   return 2.0 * (n * step - std::floor(n * step)) - 1.0;
 }
 
-/// Returns rays that do not depend on RAYGATE_SEED. A third of them have any_hit, or a limit.
+/// Returns rays that do not depend on RAYGATE_SEED. One in six has any_hit, one in six a t_max.
 inline std::vector<CoreRay> fixed_rays(std::uint32_t count) {
   std::vector<CoreRay> rays;
   for (std::uint32_t n = 0; n < count; ++n) {
@@ -81,10 +80,10 @@ inline std::vector<std::uint64_t> events(CoreUnit& core, std::span<const MemoryL
 /// Number of lines by which FarLines moves all lines but the root. Most of its 28 bits are ones.
 constexpr std::uint32_t kFar = 0xFEF'EDCB;
 
-/// A copy of an image with all lines but the root moved up by kFar, and ranks in the same order
-/// whose differences are powers of two: results then depend on high bits of line numbers and on
-/// each bit of ranks. Takes 16 GiB of addresses, but memory only for the copied lines. Throws
-/// std::bad_alloc.
+/// A copy of an image of at most 800 triangles. All lines but the root are moved up by kFar. Ranks
+/// keep their order, and neighbouring ranks differ by a power of two. So results depend on high
+/// bits of line numbers and on most bits of ranks. Reserves 16 GiB of address space; only copied
+/// lines take memory. Throws std::bad_alloc.
 class FarLines {
  public:
   explicit FarLines(const MemoryImage& image) : size_(image.lines().size() + kFar) {
