@@ -164,7 +164,7 @@ def table(units: list[tuple[tuple, dict]], write: Callable[[list[str], list[list
         name = ", ".join([design.top, *(says for key, says in NAMES.items() if key in design.parameters)])
         cells = ["-" if not cell else got[key] for key, cell in zip(("luts", "registers", "multipliers"), fpga.cells, strict=False)]
         rows.append([name, form, kind, fpga.title, *cells, f"{got['mhz']} ({got['rates'][0]} to {got['rates'][-1]})", f"{got['mhz'] / period(design.top):.2f}"])
-    return f"{write(heads, rows)}\n{tables.measured('make fpga PUBLISH=1')}"
+    return f"{write(heads, rows)}\n{tables.measured('make fpga' + ' PUBLISH=1' * (write is tables.page))}"
 
 
 # Descriptions of units' parameters.
