@@ -25,8 +25,7 @@ TARGETS = ("stress", "bench", "peers", "speed", "core", "variant")
 
 def arguments() -> argparse.Namespace:
     """Returns the parsed command line."""
-    parser = argparse.ArgumentParser(prog="host.lab", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="host.lab", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("target", choices=TARGETS)
     parser.add_argument("--only", default="", metavar="PART,PART", help="some of the target's parts")
     parser.add_argument("--quick", action="store_true", help="small pictures, few repeats")
