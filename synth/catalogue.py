@@ -287,7 +287,7 @@ def report_rows() -> list[Row]:
         for width in (47, 49):
             groups = widths and [*widths[:-1], widths[-1] + width - 48]
             rows.append(Row("a bit less, a bit more", design("adder", f"adder-{name}-{width}", kind, groups, look_ahead, Width=width),
-                            {"osu035": ("fast",)}))
+                            {"osu035": ("kept", "default", "fast")}))
     section = "24 x 24 multipliers"
     twice = {"osu035": ("small", "fast")}
     everywhere = {**twice, "osu018": ("fast",), **placed}

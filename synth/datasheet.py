@@ -55,9 +55,9 @@ def page(figures: dict[str, list[str]]) -> str:
     """Returns the text of PAGE. `figures`: the last three columns (um2, ns, bits) of each module's row."""
     parts = [INTRO]
     for core, files in modules().items():
-        parts += [f"## {core}\n", tables.page(["module", "what it is", "latency, clocks", "throughput", "um2", "ns", "bits"],
+        parts += [f"## {core}\n", tables.markdown(["module", "what it is", "latency, clocks", "throughput", "um2", "ns", "bits"],
                   [[name, *stated(sentences(header(file.read_text()))), *figures.get(name, [""] * 3)] for name, file in files.items()])]
-    return "\n".join(parts)
+    return tables.unpadded("\n".join(parts))
 
 
 def published(text: str) -> dict[str, list[str]]:

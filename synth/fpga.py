@@ -13,7 +13,6 @@ import json
 import pathlib
 import re
 import sys
-from collections.abc import Callable
 
 from synth import catalogue, runner, scripts, store, tables, tools, yosys
 from synth.catalogue import Design, Fpga
@@ -141,9 +140,9 @@ def main() -> int:
                                f"{got['wires']} of {got['logic'] + got['wires']:.1f} ns in wires")
          for design, _, _, fpga in units], given.jobs)
     rows = [(unit, got) for unit, got in zip(units, results, strict=True) if got]
-    print(table(rows, tables.markdown))
+    print(table(rows, "make fpga"))
     if given.publish:
-        text = table(rows, tables.page)
+        text = tables.unpadded(table(rows, "make fpga PUBLISH=1"))
         for page in catalogue.HW.glob("*/README.md"):
             page.write_text(re.sub(r"(?<=<!-- fpga -->\n).*?(?=<!-- end -->)", lambda _: text, page.read_text(), flags=re.S))
     return runner.status(failures)
@@ -156,15 +155,15 @@ def period(top: str) -> int:
     return int(said[1] or 1)
 
 
-def table(units: list[tuple[tuple, dict]], write: Callable[[list[str], list[list[object]]], str]) -> str:
-    """Returns the table, written by `write`, of units (from catalogue.fpga_units) and their results of place()."""
+def table(units: list[tuple[tuple, dict]], command: str) -> str:
+    """Returns the table of units (from catalogue.fpga_units) and their results of place(), measured by `command`."""
     heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "MHz (least to most)", "million tests/s"]
     rows = []
     for (design, form, kind, fpga), got in units:
         name = ", ".join([design.top, *(says for key, says in NAMES.items() if key in design.parameters)])
         cells = ["-" if not cell else got[key] for key, cell in zip(("luts", "registers", "multipliers"), fpga.cells, strict=False)]
         rows.append([name, form, kind, fpga.title, *cells, f"{got['mhz']} ({got['rates'][0]} to {got['rates'][-1]})", f"{got['mhz'] / period(design.top):.2f}"])
-    return f"{write(heads, rows)}\n{tables.measured('make fpga' + ' PUBLISH=1' * (write is tables.page))}"
+    return f"{tables.markdown(heads, rows)}\n{tables.measured(command)}"
 
 
 # Descriptions of units' parameters.

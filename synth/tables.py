@@ -25,9 +25,9 @@ def markdown(header: list[str], rows: list[list[object]]) -> str:
     return "\n".join([lines[0], rule, *lines[1:]]) + "\n"
 
 
-def page(header: list[str], rows: list[list[object]]) -> str:
-    """Returns the table of `markdown` without padding, for pages."""
-    return re.sub(r"(?m)^\|-.*", lambda rule: re.sub("-+", "---", rule[0]), re.sub(r" *\| *", "|", markdown(header, rows)))
+def unpadded(text: str) -> str:
+    """Returns a page's text, with the padding of its tables removed."""
+    return re.sub(r"(?m)^\|.*", lambda line: re.sub("-+", "---", line[0]) if line[0].startswith("|-") else re.sub(r" *\| *", "|", line[0]), text)
 
 
 def comma_separated(rows: list[dict], columns: list[str]) -> str:
@@ -60,7 +60,7 @@ def with_results(text: str, measured_by: dict[str, str] = {}) -> str:
                 if (row["section"], row["target"]) == (section, "osu035"):
                     designs.setdefault(row["design"], {"design": row["design"]})[row["flow"]] = f"{int(row['area']):,} / {float(row['delay_ns']):.2f}"
             rows, heads = list(designs.values()), ["design", *heads]
-        return f"{mark[1]}{page(heads, [[row.get(head, '') for head in heads] for row in rows])}\n{measured_by.get(file, mark[4] or '')}"
+        return f"{mark[1]}{unpadded(markdown(heads, [[row.get(head, '') for head in heads] for row in rows]))}\n{measured_by.get(file, mark[4] or '')}"
     return re.sub(r"(<!-- (\S+\.csv[^:>]*): ([^>]*) -->\n).*?(`make [^\n]*\n)?(?=<!-- end -->)", table, text, flags=re.S)
 
 

@@ -16,7 +16,7 @@ import sys
 from host.lab import rows as kept, steps
 from host.lab.report import document
 from host.lab.rows import KEPT, ROOT, processors
-from synth import tools
+from synth import tables, tools
 
 REPORTS = ROOT / "build" / "reports"
 PUBLISHED = ROOT / "host" / "lab" / "results"
@@ -25,8 +25,7 @@ TARGETS = ("stress", "bench", "peers", "speed", "core", "variant")
 
 def arguments() -> argparse.Namespace:
     """Returns the parsed command line."""
-    parser = argparse.ArgumentParser(prog="host.lab", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="host.lab", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("target", choices=TARGETS)
     parser.add_argument("--only", default="", metavar="PART,PART", help="some of the target's parts")
     parser.add_argument("--quick", action="store_true", help="small pictures, few repeats")
@@ -42,7 +41,7 @@ def arguments() -> argparse.Namespace:
 
 def publish(name: str, folder: pathlib.Path, text: str) -> None:
     """Copies a report with its plots and long tables into host/lab/results; removes files that no report uses."""
-    (PUBLISHED / f"{name}.md").write_text(text)
+    (PUBLISHED / f"{name}.md").write_text(tables.unpadded(text))
     for file in [*folder.glob("*.png"), *folder.glob("*.csv")]:
         shutil.copy(file, PUBLISHED)
     shown = "".join(page.read_text() for page in PUBLISHED.glob("*.md"))

@@ -27,8 +27,7 @@ def write(file: pathlib.Path, rows: list[dict]) -> None:
 
 def of(rows: list[dict], table: str, **values: object) -> list[dict]:
     """Returns the rows of a table whose columns have these values."""
-    return [row for row in rows if row["table"] == table
-            and all(row.get(name) == value for name, value in values.items())]
+    return [row for row in rows if row["table"] == table and all(row.get(name) == value for name, value in values.items())]
 
 
 def scene_name(row: dict) -> str:

@@ -63,10 +63,10 @@ def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> li
 
 
 def render(command: list, *words: object, picture: pathlib.Path | None = None) -> dict:
-    """Returns the statistics of ./render, with the cpu engine unless `words` select another."""
+    """Returns the statistics of ./render, with the cpu engine unless `words` select another. Does not show warnings."""
     engine = () if "--engine" in words else ("--engine", "cpu")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         subprocess.run([*command, *engine, "--quiet", *words, "--output", picture or folder / "picture.exr",
-                        "--stats", folder / "stats.json"], cwd=ROOT, check=True)
+                        "--stats", folder / "stats.json"], cwd=ROOT, stderr=subprocess.PIPE, text=True, check=True)
         return json.loads((folder / "stats.json").read_text())

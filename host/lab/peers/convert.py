@@ -104,7 +104,7 @@ def read_meshes(file: pathlib.Path, materials: dict[str, Material]) -> list[Mesh
         elif word in ("o", "g"):
             group = " ".join(rest)
         elif word == "usemtl":
-            made_of = " ".join(rest)
+            made_of = " ".join(rest) if " ".join(rest) in materials else ""
         elif word == "f":
             fan = []
             for corner in rest:
@@ -127,10 +127,10 @@ def read(file: pathlib.Path) -> Scene:
     """Returns the scene of a JSON file."""
     given = json.loads(file.read_text())
     obj = (file.parent / given.get("obj", file.with_suffix(".obj").name)).resolve()
-    with obj.open() as lines:
-        mtl = obj.parent / next(line.split()[1] for line in lines if line.startswith("mtllib"))
+    libraries = [obj.parent / line.split()[1] for line in obj.read_text().splitlines() if line.startswith("mtllib")]
     camera = {"up": [0, 1, 0], "fov": 35} | {key: value for key, value in given["camera"].items() if key != "path"}
-    return Scene(camera, read_meshes(obj, read_materials(mtl)), given.get("point_lights", []),
+    materials = {"": Material("")} | {name: made for mtl in libraries if mtl.exists() for name, made in read_materials(mtl).items()}
+    return Scene(camera, read_meshes(obj, materials), given.get("point_lights", []),
                  given.get("area_lights", []), colour(given.get("background", 0.0)))
 
 
@@ -158,8 +158,7 @@ def write_ply(mesh: Mesh, file: pathlib.Path) -> None:
 def bsdf(material: Material) -> dict:
     """Returns a Mitsuba material."""
     if material.index is not None:
-        return {"type": "dielectric", "int_ior": material.index, "ext_ior": 1.0,
-                "specular_transmittance": rgb(material.transmittance)}
+        return {"type": "dielectric", "int_ior": material.index, "ext_ior": 1.0, "specular_transmittance": rgb(material.transmittance)}
     if max(material.mirror) > 0.0:
         inside = {"type": "conductor", "material": "none", "specular_reflectance": rgb(material.mirror)}
     else:
@@ -213,13 +212,11 @@ def write_mitsuba(scene: Scene, side: int, folder: pathlib.Path) -> None:
         for part in light_meshes(mesh, everything) if shines else [mesh]:
             name = f"mesh_{sum(key.startswith('mesh_') for key in found)}"
             write_ply(part, folder / f"{name}.ply")
-            found[name] = {"type": "ply", "filename": f"{name}.ply", "face_normals": part.normals is None,
-                           "bsdf": bsdf(part.material)}
+            found[name] = {"type": "ply", "filename": f"{name}.ply", "face_normals": part.normals is None, "bsdf": bsdf(part.material)}
             if shines:
                 found[name]["emitter"] = {"type": "area", "radiance": rgb(part.material.emission)}
     for number, light in enumerate(scene.point_lights):
-        found[f"point_{number}"] = {"type": "point", "position": light["position"],
-                                    "intensity": rgb(colour(light["intensity"]))}
+        found[f"point_{number}"] = {"type": "point", "position": light["position"], "intensity": rgb(colour(light["intensity"]))}
     if max(scene.background) > 0.0:
         found["background"] = {"type": "constant", "radiance": rgb(scene.background)}
     (folder / "mitsuba.json").write_text(json.dumps(found, indent=1))

@@ -13,8 +13,8 @@ from host.lab.peers import convert
 from host.lab.rows import ROOT, processors
 from host.lab.steps import render
 
-# The materials of these scenes exist in both renderers.
-SCENES = ("cornell", "cornell_spheres", "columns", "landscape", "lanterns")
+# The materials of these scenes exist in both renderers. The last four have models from Debian's packages.
+SCENES = ("cornell", "cornell_spheres", "columns", "landscape", "lanterns", "cornell_embree", "bunny", "mug", "wuson")
 SIDE = 128  # pixels
 VARIANT = "llvm_ad_rgb"  # Mitsuba's fastest variant for every scene
 # Mitsuba's best samplers. Only these samplers are also timed with other numbers of samples.
@@ -58,8 +58,7 @@ class Raygate:
             found = render(self._command, *options, "--spp", str(samples), "--seed", str(seed), picture=picture)
             pixels = light_of(picture)
         seconds = found["seconds"]
-        return {"seconds": seconds["render"], "processor_seconds": seconds.get("processor", seconds["render"]),
-                "samples": samples}, pixels
+        return {"seconds": seconds["render"], "processor_seconds": seconds.get("processor", seconds["render"]), "samples": samples}, pixels
 
     def close(self) -> None:
         """Does nothing, as no process is left running."""
@@ -111,14 +110,29 @@ def shown(light: numpy.ndarray) -> numpy.ndarray:
     return numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
-def display_rmse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
-    """Returns the RMSE of displayed images in steps of an 8-bit display."""
-    return 255.0 * mse(shown(picture), shown(reference)) ** 0.5
+def display_mse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
+    """Returns the mean squared error of displayed images, in squared steps of an 8-bit display."""
+    return 255.0 ** 2 * mse(shown(picture), shown(reference))
 
 
 def standard_error(values: list[float]) -> float:
     """Returns the standard error of the mean over seeds; 0 for one value."""
     return statistics.stdev(values) / len(values) ** 0.5 if len(values) > 1 else 0.0
+
+
+def at_count(rows: list[dict]) -> list[dict]:
+    """Returns the rows with about COUNT samples per pixel, without those that use the time of another row."""
+    return [row for row in rows if COUNT / 2 < row["samples"] <= 2 * COUNT and not row.get("equal_time")]
+
+
+def best(rows: list[dict], error: str) -> dict:
+    """Returns the row of Mitsuba's best sampler at COUNT samples: the least product of time and `error`."""
+    return min((row for row in at_count(rows) if row["renderer"] == "Mitsuba"), key=lambda row: row["median_seconds"] * row[error])
+
+
+def equal_time_samples(ours: dict, theirs: dict) -> int:
+    """Returns the samples per pixel that raygate renders in the time of Mitsuba's row, if time is proportional to samples."""
+    return max(1, round(ours["samples"] * theirs["median_seconds"] / ours["median_seconds"]))
 
 
 def reference(renderer: object, sampler: str, samples: int) -> tuple[numpy.ndarray, float]:
@@ -163,35 +177,40 @@ class Measurement:
         return found + [(mitsuba, sampler, count) for count in counts for sampler in convert.SAMPLERS
                         if count == COUNT and one_thread or sampler in BEST]
 
-    def rows(self, threads: int, repeats: int) -> list[dict]:
+    def equal_time_rows(self, rows: list[dict], repeats: int) -> list[dict]:
+        """Returns raygate's rows with as many samples as fit into the time of Mitsuba's best samplers, of one thread's `rows`."""
+        kinds = {(row["sampler"], equal_time_samples(row, best(rows, error)))
+                 for row in at_count(rows) if row["renderer"] == "raygate" for error in ("mse", "display_mse")}
+        raygate = Raygate(scene_file(self.name), self.side, 1)
+        return [row | {"equal_time": True} for row in self.rows([(raygate, *kind) for kind in sorted(kinds)], 1, repeats)]
+
+    def rows(self, plan: list[tuple[object, str, int]], threads: int, repeats: int) -> list[dict]:
         """Returns a row for each planned measurement. Repeats use other seeds and are interleaved."""
-        plan = self.plan(threads)
         runs: list[list[dict]] = [[] for _ in plan]
         for seed in range(repeats):
             for (renderer, sampler, count), mine in zip(plan, runs, strict=True):
                 row, picture = renderer.render(sampler, count, seed)
                 truth = self.references[renderer.name]
-                mine.append(row | {"mse": mse(picture, truth), "display_rmse": display_rmse(picture, truth)})
+                mine.append(row | {"mse": mse(picture, truth), "display_mse": display_mse(picture, truth)})
         for renderer in {id(renderer): renderer for renderer, _, _ in plan}.values():
             renderer.close()
-        return [self.row(threads, renderer.name, sampler, mine)
-                for (renderer, sampler, _), mine in zip(plan, runs, strict=True)]
+        return [self.row(threads, renderer.name, sampler, mine) for (renderer, sampler, _), mine in zip(plan, runs, strict=True)]
 
     def row(self, threads: int, renderer: str, sampler: str, runs: list[dict]) -> dict:
         """Returns the row of a measurement. With one thread, time is processor time, which excludes other programs."""
         key = "processor_seconds" if threads == 1 else "seconds"
-        seconds = statistics.median(run[key] for run in runs)
-        error = statistics.fmean(run["mse"] for run in runs)
-        shown = statistics.fmean(run["display_rmse"] ** 2 for run in runs)
+        errors = {name: [run[name] for run in runs] for name in ("mse", "display_mse")}
         return {"table": "peers", "scene": self.name, "pixels": self.side ** 2, "threads": threads, "renderer": renderer,
-                "sampler": sampler, "samples": runs[0]["samples"], "median_seconds": seconds,
-                "mse": error, "mse_error": standard_error([run["mse"] for run in runs]), "display_rmse": shown ** 0.5,
-                "display_mse": shown, "display_mse_error": standard_error([run["display_rmse"] ** 2 for run in runs]),
-                "time_mse": seconds * error}
+                "sampler": sampler, "samples": runs[0]["samples"], "median_seconds": statistics.median(run[key] for run in runs),
+                **{name: statistics.fmean(values) for name, values in errors.items()},
+                **{f"{name}_error": standard_error(values) for name, values in errors.items()}}
 
 
 def measure(name: str, quick: bool, threads: set[int]) -> list[dict]:
     """Returns the rows of one scene."""
-    mine = Measurement(name, quick)
-    return [mine.references_row(128 if quick else 512),
-            *(row for count in sorted(threads) for row in mine.rows(count, 2 if quick else SEEDS))]
+    mine, repeats = Measurement(name, quick), 2 if quick else SEEDS
+    found = [mine.references_row(128 if quick else 512)]
+    for count in sorted(threads):
+        rows = mine.rows(mine.plan(count), count, repeats)
+        found += rows + (mine.equal_time_rows(rows, repeats) if count == 1 else [])
+    return found

@@ -57,8 +57,7 @@ def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
                     records = made + records
         except (tools.MissingTool, tools.ToolFailed) as error:
             print(error, file=sys.stderr)
-    return [{"table": "synthesis", **record} for record in records
-            if record.get("target") == LIBRARY and "area" in record]
+    return [{"table": "synthesis", **record} for record in records if record.get("target") == LIBRARY and "area" in record]
 
 
 def _number(record: dict, name: str) -> int:

@@ -49,8 +49,7 @@ def read_word(word: str) -> tuple[str, object]:
 
 def brought_files(words: list[str]) -> dict[str, str]:
     """Returns the files of user-supplied modules, by brought.PLACES."""
-    return {name: text for name, _, text in (word.partition("=") for word in words)
-            if name in brought.PLACES and text.endswith(FILES)}
+    return {name: text for name, _, text in (word.partition("=") for word in words) if name in brought.PLACES and text.endswith(FILES)}
 
 
 def table(words: list[str]) -> list[dict]:
@@ -93,8 +92,7 @@ def judged(words: list[str]) -> list[dict]:
 
 def variants(given: argparse.Namespace) -> list[dict]:
     """Returns the rows of `lab variants`, each with its adder."""
-    return [{**row, "adder": line.get("adder", "")}
-            for row, line in zip(bench.variants(), table(given.variant), strict=True)]
+    return [{**row, "adder": line.get("adder", "")} for row, line in zip(bench.variants(), table(given.variant), strict=True)]
 
 
 def pictures(given: argparse.Namespace) -> list[Step]:

@@ -122,8 +122,7 @@ class Frames(unittest.TestCase):
                              "point_ulp": {"p99": 2.0}}}
         simulated = {key: value for key, value in row.items() if key != "decisions"}
         simulated |= {"engine": "unit", "unit_tests": 100, "clocks": 700}
-        (frame,) = bench.frames([row, simulated, {**VARIANT, "variant": "serial"}, VARIANT,
-                                 unit("hit_test_unit", 50, 20.0)])
+        (frame,) = bench.frames([row, simulated, {**VARIANT, "variant": "serial"}, VARIANT, unit("hit_test_unit", 50, 20.0)])
         self.assertEqual((frame["scene"], frame["clocks"], frame["wrong"]), ("a", 7000, 4000))
         self.assertFalse(frame["clocks_modelled"])
         self.assertAlmostEqual(frame["frame_ms"], 0.14)

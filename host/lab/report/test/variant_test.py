@@ -62,8 +62,7 @@ class Card(unittest.TestCase):
             plots.save_pixels(numpy.zeros((2, 3, 3)), folder / "seen.png")
             rows = [{"table": "machine"}]
             for line, digits in (("binary32", 24), ("e8p16", 16)):
-                frame = {"table": "pictures", "variant": line, "scene": "scenes/cornell.obj", "unit_tests": 50,
-                         "clocks": 60}
+                frame = {"table": "pictures", "variant": line, "scene": "scenes/cornell.obj", "unit_tests": 50, "clocks": 60}
                 rows += [{"table": "variants", "variant": line, "digits": digits, **format_of}, {**frame, "engine": "unit"},
                          {**frame, "engine": "model", "decisions": exact if digits == 24 else decisions, "flip": 0.5, "picture": str(folder / "seen"),
                           "map": str(folder / "seen.png")}]
