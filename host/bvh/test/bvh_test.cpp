@@ -175,6 +175,13 @@ TEST(Bvh, DepthIsBounded) {
   EXPECT_GT(depth, Bvh::kMaxDepth - 4);  // without the bound, it would be deeper
 }
 
+TEST(Bvh, BoundsOfZerosAreNotSubnormal) {
+  const Box box = box_around({0.0f, -0.0f, -1.0f}, {0.0f, -0.0f, 0.0f}, {0.0f, -0.0f, 1.0f});
+  for (const int lane : {0, 1, 4, 5}) EXPECT_EQ(box[lane], -0x1p-120f);
+  EXPECT_LT(box[2], -1.0f);
+  EXPECT_LT(box[6], -1.0f);
+}
+
 bool same_bytes(const Bvh& a, const Bvh& b) {
   if (a.nodes().size() != b.nodes().size() || a.primitive_count() != b.primitive_count())
     return false;
