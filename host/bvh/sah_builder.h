@@ -34,7 +34,6 @@ RAYGATE_INLINE float half_area(const Box& box, float unit) {
 }
 
 /// Returns corners' bounds, widened by a float on each side; finite for all but the largest float.
-/// Zeros are widened by 2^-120, because some processors multiply subnormal distances slowly.
 RAYGATE_INLINE Box box_around(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const Box corners[3] = {{a.x, a.y, a.z, 0.0f, -a.x, -a.y, -a.z, 0.0f},
                           {b.x, b.y, b.z, 0.0f, -b.x, -b.y, -b.z, 0.0f},
@@ -42,11 +41,12 @@ RAYGATE_INLINE Box box_around(const glm::vec3& a, const glm::vec3& b, const glm:
   Box box = corners[0];
   grow(box, corners[1]);
   grow(box, corners[2]);
-  // The next float below: smaller bits for a positive float, larger bits for a negative one.
+  // The next float below: smaller bits for a positive float, larger bits for a negative one, and
+  // the negative number of least magnitude for both zeros.
   const IntLanes bits = reinterpret_cast<IntLanes>(box);
   const IntLanes zero = (bits & 0x7FFFFFFF) == 0;
   const IntLanes below = bits + ((bits > 0) | 1);  // adds -1 to positive bits, 1 to others
-  return zero ? Box{} - 0x1p-120f : reinterpret_cast<Box>(below);
+  return reinterpret_cast<Box>(zero ? IntLanes{} + static_cast<std::int32_t>(0x80000001u) : below);
 }
 
 /// A primitive of a BinaryBvh: its box and a number that the caller assigns.
