@@ -176,7 +176,8 @@ TEST(Bvh, DepthIsBounded) {
 }
 
 TEST(Bvh, BoundsAreNotSubnormal) {
-  for (const Bvh::Node& node : Bvh(test::scene_of(test::sphere(4))).nodes()) {
+  const Bvh bvh(test::scene_of(test::sphere(4)));
+  for (const Bvh::Node& node : bvh.nodes()) {
     for (const auto& corner : node.bounds) {
       for (const auto& axis : corner) {
         for (const float bound : axis) EXPECT_NE(std::fpclassify(bound), FP_SUBNORMAL);
