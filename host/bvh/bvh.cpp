@@ -285,7 +285,10 @@ void Bvh::build(std::span<const glm::vec3> positions, std::span<const Triangle> 
     const std::size_t end = std::min((task + 1) * kTreeTask, primitives.size());
     for (std::size_t i = task * kTreeTask; i < end; ++i) {
       const auto& [a, b, c] = triangles[i].vertices;
-      const Box box = box_around(positions[a], positions[b], positions[c]);
+      Box box = box_around(positions[a], positions[b], positions[c]);
+      // Widens bounds near 0: rays from 0 would have subnormal distances to them, which some
+      // processors multiply slowly.
+      box = absolute(box) < 0x1p-120f ? Box{} - 0x1p-120f : box;
       primitives[i] =
           Primitive(box, is_left_out(triangles[i]) ? kLeftOut : static_cast<std::uint32_t>(i));
     }

@@ -36,11 +36,8 @@
 // outside the triangle's own box. Comparisons are written so that a NaN is ignored.
 
 namespace raygate {
-namespace {
 
 constexpr float kFarthest = std::numeric_limits<float>::max();  // larger than any finite t or entry
-
-}  // namespace
 
 PacketTraversal::PacketTraversal(const Bvh& bvh, int octant) : bvh_(&bvh), octant_(octant) {
   rays_.cutoff = FloatLanes{} - 1.0f;  // below any entry, because there is no ray yet

@@ -175,6 +175,17 @@ TEST(Bvh, DepthIsBounded) {
   EXPECT_GT(depth, Bvh::kMaxDepth - 4);  // without the bound, it would be deeper
 }
 
+TEST(Bvh, BoundsAreNotSubnormal) {
+  const Bvh bvh(test::scene_of(test::sphere(4)));
+  for (const Bvh::Node& node : bvh.nodes()) {
+    for (const auto& corner : node.bounds) {
+      for (const auto& axis : corner) {
+        for (const float bound : axis) EXPECT_NE(std::fpclassify(bound), FP_SUBNORMAL);
+      }
+    }
+  }
+}
+
 bool same_bytes(const Bvh& a, const Bvh& b) {
   if (a.nodes().size() != b.nodes().size() || a.primitive_count() != b.primitive_count())
     return false;
