@@ -95,6 +95,8 @@ which samplers of Mitsuba round up to as many as 64; at equal time, raygate has 
 {{ table(summary, "scene", "seconds :.2f", "MSE = mse", "MSE on a display = display_mse", "MSE at equal time = equal_mse", "on a display = equal_display_mse",
          "without light paths = plain_mse", "on a display = plain_display_mse") }}
 
+In scenes without caustics, the last two columns differ from those before by the noise of times, and because raygate's sampler is best at powers of two.
+
 ## Do they compute the same picture?
 
 {{ saved("peers-references", of("references"), "scene", "samples :d", "mean, raygate = mean_raygate :.5f", "mean, Mitsuba = mean_mitsuba :.5f", "RMSE = rmse :.6f", "of which noise = noise :.6f") }}: means of both pictures, the RMSE between them, and the RMSE to expect
