@@ -82,20 +82,19 @@ of ten interleaved seeds, without loading and compiling; with one thread, they a
 to the renderer's own long run. MSE is the mean square error of scene-linear light, dominated by a few bright pixels;
 MSE on a display is that of 8-bit display values.
 
-The algorithms differ. raygate finds caustics by light paths; the last two columns are without them. It traces eight
+The algorithms differ. raygate finds caustics by light paths; the last two columns are without them. In scenes without caustics, they differ
+from the two before by noise in the times, which changes numbers of samples; raygate's sampler is best at powers of two. It traces eight
 more rays per sample in pixels with an edge of an emitter. Materials are those that both renderers have. The first five
 scenes are raygate's. The last four have models from Debian: `cornell_embree` is Embree's, with its camera, light and
 colours; `bunny` (glmark2), `mug` (MuJoCo) and `wuson` (Assimp) are grey, with camera and light chosen here.
 
 Ratios of raygate to Mitsuba (`llvm_ad_rgb`) with its best sampler, which has the least product of time and error, one
-thread (mean ± standard error of ten seeds); below 1, raygate is better. The first columns are for 32 samples per pixel,
+thread (mean and standard error of ten seeds); below 1, raygate is better. The first columns are for 32 samples per pixel,
 which samplers of Mitsuba round up to as many as 64; at equal time, raygate has the samples that fit into Mitsuba's time
 (actual times differ by at most {{ "%.0f"|format(100 * off) }} %):
 
 {{ table(summary, "scene", "seconds :.2f", "MSE = mse", "MSE on a display = display_mse", "MSE at equal time = equal_mse", "on a display = equal_display_mse",
          "without light paths = plain_mse", "on a display = plain_display_mse") }}
-
-In scenes without caustics, the last two columns differ from those before by the noise of times, and because raygate's sampler is best at powers of two.
 
 ## Do they compute the same picture?
 
