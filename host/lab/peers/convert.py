@@ -118,8 +118,7 @@ def read_meshes(file: pathlib.Path, materials: dict[str, Material]) -> list[Mesh
     meshes = []
     for (name, _, smooth), indices in corners.items():
         unique, faces = numpy.unique(numpy.array(indices), axis=0, return_inverse=True)
-        meshes.append(Mesh(materials[name], arrays["v"][unique[:, 0]],
-                           arrays["vn"][unique[:, 1]] if smooth else None, faces.reshape(-1, 3)))
+        meshes.append(Mesh(materials[name], arrays["v"][unique[:, 0]], arrays["vn"][unique[:, 1]] if smooth else None, faces.reshape(-1, 3)))
     return meshes
 
 

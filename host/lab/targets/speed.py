@@ -27,11 +27,12 @@ def over_best(row: dict) -> dict:
     ours = row["at"]["raygate"]
     found = {**row, "mrays": ours["mrays_per_second"]}
     for kind, is_robust in (("fast", False), ("robust", True)):
-        modes = [peer for name, peer in row["at"].items() if name != "raygate" and name.endswith(" robust") == is_robust]
-        best = max(modes, key=lambda peer: peer["mrays_per_second"], default=None)
-        ratio = ours["mrays_per_second"] / best["mrays_per_second"] if best else None
-        spread = ratio * (ours["spread_percent"] + best["spread_percent"]) / 100 if best else None
-        found |= {kind: f"{ratio:.2f} ± {spread:.2f}" if best else None, f"{kind}_mode": best and best["by"].removesuffix(" robust")}
+        peers = [peer for name, peer in row["at"].items() if name != "raygate" and name.endswith(" robust") == is_robust]
+        best = max(peers, key=lambda peer: peer["mrays_per_second"])
+        ratio = ours["mrays_per_second"] / best["mrays_per_second"]
+        spread = ratio * (ours["spread_percent"] + best["spread_percent"]) / 100
+        form = ".1f" if spread >= 0.1 else ".2f"
+        found |= {kind: f"{ratio:{form}} ± {spread:{form}}", f"{kind}_mode": best["by"].removesuffix(" robust")}
     return found
 
 
