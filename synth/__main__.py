@@ -30,6 +30,7 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
     cells = design.top == "adder"
     flows = (("cells", "kept", "default", "fast") if cells else
              ("blocks",) if design.clock and design.folder in ("exact", "ray_core") else
+             ("parts",) if design.clock and design.folder == "hit_test" else
              ("small", "parts") if design.clock else ("area", "small", "fast"))
     plan = dict.fromkeys(targets.names, catalogue.PLACED)
     plan |= {library.name: flows for library in catalogue.LIBRARIES if library.name in plan}
