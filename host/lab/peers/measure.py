@@ -10,6 +10,7 @@ import tempfile
 import numpy
 
 from host.lab.peers import convert
+from host.lab.report import plots
 from host.lab.rows import ROOT, processors
 from host.lab.steps import render
 
@@ -17,8 +18,7 @@ from host.lab.steps import render
 SCENES = ("cornell", "cornell_spheres", "columns", "landscape", "lanterns", "cornell_embree", "bunny", "mug", "wuson")
 SIDE = 128  # pixels
 VARIANT = "llvm_ad_rgb"  # Mitsuba's fastest variant for every scene
-# Mitsuba's best samplers. Only these samplers are also timed with other numbers of samples.
-BEST = ("multijitter", "orthogonal")
+CURVES = ("multijitter", "orthogonal")  # Mitsuba's samplers that are also timed with all threads and with other numbers of samples
 NO_LIGHT_PATHS = "--caustics off"  # Mitsuba's `path` has no light paths
 SEEDS = 10  # per image
 COUNT = 32  # samples per pixel in the tables; samplers may round it up
@@ -161,6 +161,7 @@ class Measurement:
             renderer.close()
         self.references = {name: picture for name, (picture, _) in found.items()}
         (ours, our_noise), (theirs, their_noise) = found.values()
+        plots.save_pixels(0.5 + 10.0 * (ours - theirs), self.folder / "difference.png")
         return {"table": "references", "scene": self.name, "samples": 2 * samples,
                 "mean_raygate": float(ours.mean()), "mean_mitsuba": float(theirs.mean()),
                 "rmse": mse(ours, theirs) ** 0.5, "noise": (our_noise + their_noise) ** 0.5}
@@ -175,7 +176,7 @@ class Measurement:
             found += [(raygate, NO_LIGHT_PATHS, COUNT)]
         mitsuba = Mitsuba(self.folder, threads)
         return found + [(mitsuba, sampler, count) for count in counts for sampler in convert.SAMPLERS
-                        if count == COUNT and one_thread or sampler in BEST]
+                        if count == COUNT and one_thread or sampler in CURVES]
 
     def equal_time_rows(self, rows: list[dict], repeats: int) -> list[dict]:
         """Returns raygate's rows with as many samples as fit into the time of Mitsuba's best samplers, of one thread's `rows`."""
