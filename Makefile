@@ -90,7 +90,7 @@ test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests: make t
 ifdef LONG
 	$(if $(filter $(LONG),$(LONG_RUNS)),,$(error LONG=$(LONG), expected one of: $(LONG_RUNS)))
 	$(if $(filter commands image fuzz mutate,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),$(if $(filter trimesh binary64,$(LONG)),_raygate,worked_example))))
-	@unset LONG MAKEFLAGS MAKELEVEL MFLAGS; $(LONG_$(LONG))  # a make that it calls has words of its own
+	@unset LONG MAKEFLAGS MAKELEVEL MFLAGS; $(LONG_$(LONG))  # a nested make has its own command line
 else
 	$(call build,test,all)
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error $${SKIP:+-E "$$SKIP"}
