@@ -37,8 +37,7 @@ def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, 
         except (KeyError, TypeError, ZeroDivisionError, jinja2.UndefinedError):  # the row lacks a value
             return dash
 
-    return ([part["head"] for part in parts],
-            [[cell(value, row, form) for value, form in zip(values, forms, strict=True)] for row in rows])
+    return ([part["head"] for part in parts], [[cell(value, row, form) for value, form in zip(values, forms, strict=True)] for row in rows])
 
 
 def table(rows: list[dict], *columns: str | list[str]) -> str:

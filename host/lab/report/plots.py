@@ -41,8 +41,7 @@ def panels(count: int, columns: int, size: tuple[float, float], **words: object)
     """Returns a figure with `count` panels, in rows of `columns`, each of this size in inches."""
     columns = min(count, columns)
     lines = -(-count // columns)
-    figure, grid = plt.subplots(lines, columns, figsize=(size[0] * columns, size[1] * lines), squeeze=False,
-                                layout="constrained", **words)
+    figure, grid = plt.subplots(lines, columns, figsize=(size[0] * columns, size[1] * lines), squeeze=False, layout="constrained", **words)
     for axes in grid.flat[count:]:
         axes.set_axis_off()
     return figure, list(grid.flat[:count])

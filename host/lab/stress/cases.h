@@ -93,10 +93,9 @@ struct Truth {
 
 /// Computes the results by definition: all coordinates are integer multiples of a power of two, so
 /// the determinants are integers. With A, B, C the vertices minus the origin, a ray of direction I
-/// hits if D = A . (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have D's sign. If
-/// such a product with I is 0, its sign is that of the first non-zero component of the cross
-/// product, as if I were tilted by (e, e^2, e^3) with a tiny e > 0. Zero, infinite and NaN
-/// directions hit nothing.
+/// hits if D = A . (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have D's sign. If a
+/// product with I is 0, its sign is that of the first non-zero component of the cross product, as
+/// if I were tilted by (e, e^2, e^3) with tiny e > 0. Zero, infinite and NaN directions miss.
 [[nodiscard]] Truth find_truth(const Shot& shot);
 
 /// Position of a mesh made around the origin at size 1: p becomes p * scale + shift, rounded.

@@ -93,8 +93,7 @@ def frames(rows: list[dict]) -> list[dict]:
       area, period_ns, frame_ms, area_time    if synthesis has measured the unit
     """
     pictures = of(rows, "pictures")
-    clocks_a_test = {row["variant"]: row["clocks"] / row["unit_tests"] for row in pictures
-                     if row["engine"] == "unit" and row["unit_tests"]}
+    clocks_a_test = {row["variant"]: row["clocks"] / row["unit_tests"] for row in pictures if row["engine"] == "unit" and row["unit_tests"]}
     known = {row["variant"]: row for row in of(rows, "variants")}
     synthesis = of(rows, "synthesis")
     found = []

@@ -27,8 +27,7 @@ def _parameters(variant: dict) -> dict[str, int]:
 
 def design(variant: dict) -> catalogue.Design:
     """Returns the design of the variant's unit."""
-    return catalogue.design(UNITS[variant["unit"]], **{name: value for name, value in _parameters(variant).items()
-                                                       if value != USUAL[name]})
+    return catalogue.design(UNITS[variant["unit"]], **{name: value for name, value in _parameters(variant).items() if value != USUAL[name]})
 
 
 def measured(folder: str, rows: dict[str, catalogue.Row], workers: int) -> list[dict]:
