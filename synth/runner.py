@@ -37,8 +37,7 @@ def run(jobs: list[Job], workers: int, failures: list[str]) -> Iterator[dict | N
                     result, told = None, "FAILED"
                     failures.append(f"{job.name}: {error}")
                 if told:
-                    print(f"[{done:{len(str(len(jobs)))}}/{len(jobs)} {time.monotonic() - start:4.0f} s]", job.name, told,
-                          file=sys.stderr, flush=True)
+                    sys.stderr.write(f"[{done:{len(str(len(jobs)))}}/{len(jobs)} {time.monotonic() - start:4.0f} s] {job.name} {told}\n")
                 yield result
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
@@ -52,7 +51,7 @@ def run_all(jobs: list[Job], workers: int) -> tuple[list[dict | None], list[str]
 
 def step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
     """Prints which step begins and the name of its log file, then returns the result of `work`."""
-    print(f"{what}: {str(log).removeprefix(f'{tools.ROOT}/')}", file=sys.stderr, flush=True)
+    sys.stderr.write(f"{what}: {str(log).removeprefix(f'{tools.ROOT}/')}\n")  # in one call: print writes the end of the line alone
     return work()
 
 

@@ -48,7 +48,7 @@ def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> li
         wanted = store.key([], step.command(target), step.name, asked, stamp)
 
         def measure() -> dict:
-            print(f"{step.part}: {step.name}", file=sys.stderr)
+            sys.stderr.write(f"{step.part}: {step.name}\n")
             return {"rows": step.measure() if step.measure else run_lab(*step.words)}
 
         return store.cached(folder / wanted[:16], wanted, measure)
