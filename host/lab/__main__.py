@@ -72,8 +72,7 @@ def run(given: argparse.Namespace) -> int:
     (folder / "report.md").write_text(text)
     if given.publish:
         publish(given.target, folder, text)
-    print(text)
-    print(f"Report: {folder.relative_to(ROOT)}/report.md; rows: {file.relative_to(ROOT)}")
+    print(text, f"Report: {folder.relative_to(ROOT)}/report.md; rows: {file.relative_to(ROOT)}", sep="\n")
     wrong = target.failures(rows) if hasattr(target, "failures") else []
     print("".join(f"error: {line}\n" for line in wrong), end="", file=sys.stderr)
     return 1 if wrong else 0

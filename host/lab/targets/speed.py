@@ -25,12 +25,12 @@ PARTS = {"rays": rays_steps}
 def over_best(row: dict) -> dict:
     """Returns a row with raygate's rays per second relative to Embree's fastest mode and fastest robust mode, of all versions."""
     found = {**row, "mrays": row["at"]["raygate"]["mrays_per_second"]}
-    for kind, is_robust in (("fast", False), ("robust", True)):
-        peers = [peer for name, peer in row["at"].items() if name != "raygate" and name.endswith(" robust") == is_robust]
+    for kind, ending in (("fast", ""), ("robust", " robust")):
+        peers = [peer for name, peer in row["at"].items() if name != "raygate" and name.endswith(ending)]
         best = min(peers, key=lambda peer: peer["raygate_over_peer"])
         low, ratio, high = (best[column] for column in ("lower_quartile", "raygate_over_peer", "upper_quartile"))
         form = ".1f" if high - low >= 0.1 else ".2f"
-        found |= {kind: f"{ratio:{form}} ({low:{form}} to {high:{form}})", f"{kind}_mode": best["by"].removesuffix(" robust")}
+        found |= {kind: f"{ratio:{form}} ({low:{form}} to {high:{form}})", f"{kind}_mode": best["by"].removesuffix(ending)}
     return found
 
 
