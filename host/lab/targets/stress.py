@@ -97,9 +97,9 @@ an edge exactly (a tie), exact subjects must follow their tie rule; for others, 
 {% if watertight %}
 ## Public tests of watertightness
 
-Each ray must hit the mesh exactly once. Tests `... 64` have binary64 vertices. `nomiss` and `singlehit` follow the Vulkan conformance tests
-(`ray_tracing_pipeline.watertightness`), `sphere` follows Embree's `verify`. `edges` and `vertices` aim rays from inside a sphere at its edges and vertices, as
-Woop, Benthin and Wald did. Meshes and random numbers differ from the originals. `model` and the simulated hardware find only the nearest hit.
+Each ray must hit the mesh exactly once. Tests `... 64` have binary64 vertices. `nomiss` and `singlehit` follow the Vulkan conformance tests (`ray_tracing_pipeline.watertightness`),
+`sphere` follows Embree's `verify`. `edges` and `vertices` aim rays from inside a sphere at its edges and vertices, as Woop, Benthin and Wald did. Meshes and random numbers differ from
+the originals. Embree's counts depend on the processor's vector instructions. `model` and the simulated hardware find only the nearest hit.
 
 {{ watertight[0].at.values()|selectattr("exact")|map(attribute="by")|join(", ") }}: {{ leaks }} escapes and double hits. Embree, in binary32:
 
