@@ -4,7 +4,7 @@ import io
 import pathlib
 
 import numpy
-from matplotlib import pyplot as plt
+from matplotlib import pyplot as plt, ticker
 from PIL import Image
 
 
@@ -61,15 +61,15 @@ def lines(series: dict[str, list[tuple]], xlabel: str, ylabel: str, title: str, 
     """Plots the points (x, y) or (x, y, label) of each series on logarithmic axes, connected by lines."""
     figure, axes = plt.subplots(figsize=(7.5, 5), layout="constrained")
     axes.set_prop_cycle(color=plt.get_cmap("tab20" if len(series) > 10 else "tab10").colors)
-    for number, (name, points) in enumerate(series.items()):
-        points = sorted(points)
+    for number, (name, points) in enumerate((name, sorted(points)) for name, points in series.items()):
         side = 1 if number else -1  # labels of the first series are on the left
         axes.loglog([point[0] for point in points], [point[1] for point in points], marker=".", linewidth=1, label=name)
         for place, (x, y, *label) in enumerate(points):
             axes.annotate("".join(label), (x, y), xytext=(5 * side, (2, -8)[place % 2]), textcoords="offset points", fontsize=7,
                           horizontalalignment="left" if number else "right")
-    axes.margins(x=0.15)
-    axes.set(xlabel=xlabel, ylabel=ylabel, title=title)
+    axes.set(xlabel=xlabel, ylabel=ylabel, title=title, xmargin=0.15)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set(major_locator=ticker.LogLocator(subs=(1, 2, 5)), major_formatter="{x:,g}", minor_formatter="")
     axes.grid(True, which="both", alpha=0.3)
     figure.legend(loc="outside right upper", fontsize="small")
     return save(figure, file)
