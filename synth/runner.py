@@ -51,7 +51,7 @@ def run_all(jobs: list[Job], workers: int) -> tuple[list[dict | None], list[str]
 
 def step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
     """Prints which step begins and the name of its log file, then returns the result of `work`."""
-    sys.stderr.write(f"{what}: {str(log).removeprefix(f'{tools.ROOT}/')}\n")  # in one call: print writes the end of the line alone
+    sys.stderr.write(f"{what}: {str(log).removeprefix(f'{tools.ROOT}/')}\n")  # print would write the newline separately, after another thread's text
     return work()
 
 

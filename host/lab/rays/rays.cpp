@@ -1,6 +1,6 @@
 // Rays per second of the `cpu` engine and of Embree, on one thread, as medians of processor time.
-// Each run of Embree follows a run of raygate, and a ratio is taken of the two, so that changes in
-// the machine's speed affect both. Compare only rows of one run.
+// Each run of Embree follows a run of raygate. Changes in the machine's speed affect both, so the
+// ratio of the two is less noisy than either. Compare only rows of one run.
 #include "host/lab/rays/rays.h"
 
 #include <CLI/CLI.hpp>
@@ -65,7 +65,7 @@ double agreement(const Found& a, const Found& b) {
   return static_cast<double>(same) / static_cast<double>(a.triangle.size());
 }
 
-/// Times all peers on a set, in turns. peers[0] is raygate.
+/// Prints the rows of a set: times of raygate, which is peers[0], and of all other peers in turn.
 void measure(const RaySet& set, const std::string& scene,
              const std::vector<std::unique_ptr<Peer>>& peers, int repeats) {
   std::vector<Found> found(peers.size(), Found(set.rays.size()));

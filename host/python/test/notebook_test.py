@@ -26,8 +26,8 @@ class Notebook(unittest.TestCase):
     def test_runs_and_draws(self):
         notebook = executed()
         self.assertEqual(len(figures(notebook)), 3)
-        said = "".join(output.get("text", "") for cell in notebook.cells for output in cell.get("outputs", []))
-        self.assertIn("raygate                 0 of 200,000 rays hit nothing", said)
+        printed = "".join(output.get("text", "") for cell in notebook.cells for output in cell.get("outputs", []))
+        self.assertIn("raygate                 0 of 200,000 rays hit nothing", printed)
 
     def test_is_kept_with_its_figures(self):
         notebook = nbformat.read(FILE, 4)
