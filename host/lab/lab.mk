@@ -6,13 +6,12 @@
 typed = make $(MAKECMDGOALS:card=variant) $(foreach name,$(filter-out PUBLISH JOBS SETUP UNITY,$(given)),$(name)=$($(name)))
 define measure
 @$(PYTHON) -B -m host.lab $(or $(lab_target),$(@:card=variant) $(if $(ONLY),--only '$(ONLY)')) $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
-  $(if $(SCENES),--scenes '$(SCENES)') $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS) \
-  --command '$(subst ','\'',$(typed))'
+  --jobs $(JOBS) --command '$(subst ','\'',$(typed))'
 endef
 
 stress: ## measure: try to make hit tests wrong: make stress [QUICK=1 ONLY=core TESTS=10000000 SEED=1]
 	$(call build,lab,lab)
-	$(measure)
+	$(measure) $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED))
 
 bench: lab_target = $(filter core,$(ONLY))
 bench: ## measure: run time against error, by arithmetic, engine, lanes: make bench [QUICK=1 ONLY=lanes | ONLY=core: clocks of the simulated ray core]
@@ -35,16 +34,15 @@ endif
 
 # The other steps of `make variant`, one run at a time: write its table of variants, build build/lab-variant, print the card.
 card: VARIANTS = $(CURDIR)/build/results/variant.json
-card: SCENES = $(SCENE)
 card: export RAYGATE_LAB = lab-variant
 card:
 	@$(PYTHON) -B -m host.lab.targets.variant $(if $(KEEP_GOING),--keep-going) $(variant_words)
 	$(call build,bench,lab)
-	$(measure) --variant $(variant_words)
+	$(measure) $(if $(SCENE),--scenes '$(SCENE)') --variant $(variant_words)
 
 peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [QUICK=1 SCENES=cornell]
 	$(call build,peers,render scenes)
-	$(measure)
+	$(measure) $(if $(SCENES),--scenes '$(SCENES)')
 
 speed: ## measure: rays per second next to Embree: make speed [QUICK=1]
 	$(call build,lab,scenes lab)
